@@ -1,0 +1,123 @@
+// SPDX-FileCopyrightText: 2026 the trunnion authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include <cmath>
+#include <filesystem>
+#include <memory>
+
+#include "command.hpp"
+#include "terminal.hpp"
+#include "trunnion/error_model/inertial_unit.hpp"
+#include "trunnion/io/calibration_file.hpp"
+#include "trunnion/io/csv.hpp"
+#include "trunnion/io/fault.hpp"
+#include "trunnion/io/lcm_recording.hpp"
+
+namespace trunnion::app {
+namespace {
+
+struct Options {
+  std::string calibration;
+  std::string input;
+  std::string output;
+  std::string channel = "IMU";
+  int recording = 0;
+};
+
+/// Corrects samples and passes them on.
+class Corrected final : public io::SampleSink {
+ public:
+  using Write = std::function<void(std::int64_t, const InertialSample<double>&)>;
+  Corrected(const UnitCorrection<double>& correction, Write write) : correction_(correction), write_(std::move(write)) {}
+  void imu(std::int64_t utime, const InertialSample<double>& sample) override {
+    ++samples_;
+    write_(utime, correction_.correct(sample));
+  }
+  void encoder(std::int64_t, double, double) override {}
+  [[nodiscard]] long long samples() const { return samples_; }
+
+ private:
+  const UnitCorrection<double>& correction_;
+  Write write_;
+  long long samples_ = 0;
+};
+
+long long apply_to_log(const Options& o, const UnitCorrection<double>& correction) {
+  io::LcmLogReader log(o.input);
+  io::LcmLogWriter out(o.output);
+  std::string message;
+  std::int64_t sequence = 0;
+  std::int64_t timestamp = 0;
+  Corrected sink(correction, [&](std::int64_t utime, const InertialSample<double>& sample) {
+    io::encode_imu(utime, sequence++, sample, message);
+    out.write(timestamp, o.channel, message);
+  });
+  io::LcmDecoder decoder(o.input, sink);
+  io::LcmEvent event;
+  while (log.next(event)) {
+    timestamp = event.timestamp;
+    if (event.channel == o.channel) {
+      sequence = decoder.imu(event);
+    } else {
+      out.write(event.timestamp, event.channel, event.data);
+    }
+  }
+  if (sink.samples() == 0) throw io::input_error(o.input, 0, "", "no usable message on the IMU channel '" + o.channel + "'");
+  out.commit();
+  if (log.lost_bytes() > 0) std::fprintf(stderr, "%lld damaged records, %lld bytes passed over\n", log.lost_records(), log.lost_bytes());
+  return sink.samples();
+}
+
+long long apply_to_csv(const Options& o, const UnitCorrection<double>& correction) {
+  io::WholeFile out(o.output);
+  out.write(io::imu_csv_header());
+  std::string row;
+  Corrected sink(correction, [&](std::int64_t utime, const InertialSample<double>& sample) {
+    row.clear();
+    io::append_imu_csv(1e-6 * static_cast<double>(utime), sample, row);
+    out.write(row);
+  });
+  std::string digest;
+  io::read_imu_csv(o.input, {}, {}, sink, digest);
+  if (sink.samples() == 0) throw io::input_error(o.input, 0, "", "has no samples");
+  out.commit();
+  return sink.samples();
+}
+
+void apply(const Options& o) {
+  const io::CalibrationFile file = io::read_calibration_file(o.calibration);
+  InertialUnit<double> unit = file.record.value.unit;
+  if (o.recording > 0) {
+    if (o.recording > file.record.recordings) {
+      throw io::input_error(o.calibration, 0, "recordings", "has " + std::to_string(file.record.recordings) + ", not " + std::to_string(o.recording));
+    }
+    const auto& bias = file.record.value.recording_bias[static_cast<std::size_t>(o.recording - 1)];
+    unit.gyro.bias = bias.w;
+    unit.accel.bias = bias.f;
+  }
+  std::error_code error;
+  if (std::filesystem::equivalent(o.input, o.output, error)) throw Error(ExitCode::kUsage, "input and output are the same file");
+  const UnitCorrection<double> correction(unit);
+  const bool csv = std::filesystem::path(o.input).extension() == ".csv";
+  const long long samples = csv ? apply_to_csv(o, correction) : apply_to_log(o, correction);
+  std::printf("%s: %lld samples corrected\n", o.output.c_str(), samples);
+}
+
+}  // namespace
+
+void add_apply(CLI::App& app, ExitCode& exit_code) {
+  CLI::App* command = app.add_subcommand("apply", "Write a corrected log: LCM to LCM, CSV to CSV");
+  auto o = std::make_shared<Options>();
+  command->add_option("calibration", o->calibration, "Calibration file")->required();
+  command->add_option("input", o->input, "LCM log, or CSV with the header t_s,gyro_x_rad_s,...,accel_z_m_s2")->required();
+  command->add_option("-o,--output", o->output, "Corrected file to write; other channels of a log are copied")->required();
+  command->add_option("--channel", o->channel, "IMU channel of the log")->capture_default_str();
+  command->add_option("--recording", o->recording, "Use the turn-on bias of this recording, from 1; default the mean over them")->check(CLI::Range(1, 1000));
+  command->footer("Example:\n  imu_calibrate apply calibration.yaml flight.lcm -o corrected.lcm");
+  command->callback([o, &exit_code] {
+    apply(*o);
+    exit_code = ExitCode::kDone;
+  });
+}
+
+}  // namespace trunnion::app

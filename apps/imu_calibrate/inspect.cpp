@@ -1,0 +1,231 @@
+// SPDX-FileCopyrightText: 2026 the trunnion authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "command.hpp"
+#include "terminal.hpp"
+#include "trunnion/calibration/compress.hpp"
+#include "trunnion/calibration/rests_and_turns.hpp"
+#include "trunnion/core/units.hpp"
+#include "trunnion/io/lcm_recording.hpp"
+#include "trunnion/io/run_file.hpp"
+
+namespace trunnion::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Options {
+  std::string input;
+  std::string format = "text";
+  io::LcmChannels channels;
+};
+
+/// Stamps and ranges of one channel.
+class ChannelStatistics {
+ public:
+  void add(std::int64_t utime, std::initializer_list<double> values) {
+    switch (clock_.judge(utime)) {
+      case calibration::ChannelClock::Verdict::kDuplicate:
+        ++duplicates_;
+        return;
+      case calibration::ChannelClock::Verdict::kStray:
+      case calibration::ChannelClock::Verdict::kReset:
+        ++stray_;
+        return;
+      case calibration::ChannelClock::Verdict::kNext:
+        break;
+    }
+    if (messages_ == 0) {
+      first_ = utime;
+      lowest_.assign(values);
+      highest_.assign(values);
+    } else {
+      steps_.push_back(static_cast<float>(1e-6 * static_cast<double>(utime - last_)));
+    }
+    last_ = utime;
+    ++messages_;
+    std::size_t i = 0;
+    for (const double value : values) {
+      lowest_[i] = std::min(lowest_[i], value);
+      highest_[i] = std::max(highest_[i], value);
+      ++i;
+    }
+  }
+
+  [[nodiscard]] bool empty() const { return messages_ == 0; }
+
+  [[nodiscard]] Json summary(const std::vector<const char*>& names, double in_unit, const char* unit) const {
+    std::vector<float> sorted = steps_;
+    std::sort(sorted.begin(), sorted.end());
+    const double period = sorted.empty() ? 0.0 : static_cast<double>(sorted[sorted.size() / 2]);
+    double jitter = 0.0;
+    long long missing = 0;
+    long long gaps = 0;
+    double longest = 0.0;
+    for (const float step_s : steps_) {
+      const auto step = static_cast<double>(step_s);
+      longest = std::max(longest, step);
+      if (step > 1.5 * period) {
+        ++gaps;
+        missing += static_cast<long long>(std::lround(step / period)) - 1;
+      } else {
+        jitter += (step - period) * (step - period);
+      }
+    }
+    const auto regular = static_cast<double>(static_cast<long long>(steps_.size()) - gaps);
+    Json json = {{"messages", messages_}, {"rate_hz", period > 0.0 ? 1.0 / period : 0.0}, {"jitter_us", 1e6 * std::sqrt(jitter / std::max(1.0, regular))},
+                 {"gaps", gaps}, {"missing", missing}, {"longest_gap_s", longest}, {"duplicates", duplicates_}, {"stray_stamps", stray_},
+                 {"duration_s", 1e-6 * static_cast<double>(last_ - first_)}};
+    for (std::size_t i = 0; i < names.size() && i < lowest_.size(); ++i) {
+      json["range"][names[i]] = {lowest_[i] * in_unit, highest_[i] * in_unit};
+    }
+    json["range_unit"] = unit;
+    return json;
+  }
+
+ private:
+  calibration::ChannelClock clock_;
+  std::int64_t first_ = 0;
+  std::int64_t last_ = 0;
+  long long messages_ = 0;
+  long long duplicates_ = 0;
+  long long stray_ = 0;
+  std::vector<float> steps_;
+  std::vector<double> lowest_;
+  std::vector<double> highest_;
+};
+
+class InspectSink final : public io::SampleSink {
+ public:
+  explicit InspectSink(const std::string& name) : parts_(name) {}
+  void imu(std::int64_t utime, const InertialSample<double>& s) override {
+    imu_.add(utime, {s.w.x(), s.w.y(), s.w.z(), s.f.x(), s.f.y(), s.f.z()});
+    parts_.imu(utime, s);
+  }
+  void encoder(std::int64_t utime, double azimuth, double pitch) override { encoder_.add(utime, {azimuth, pitch}); }
+
+  Json summary() {
+    Json json;
+    if (!imu_.empty()) {
+      json["imu"] = imu_.summary({"gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z"}, 1.0, "rad/s, m/s^2");
+      const calibration::HandRecording parts = parts_.finish(0.0, 0.0);
+      double at_rest = 0.0;
+      for (const calibration::Rest& rest : parts.rests) at_rest += rest.end - rest.begin;
+      json["rests"] = {{"count", parts.rests.size()}, {"total_s", at_rest}};
+      json["turns"] = {{"count", parts.turns.size()}};
+      if (!parts.rests.empty()) {
+        json["noise_at_rest"] = {{"gyro_deg_per_h_per_rt_hz", parts.noise.gyro.density / kRadPerSPerDegPerH},
+                                 {"accel_ug_per_rt_hz", parts.noise.accel.density / kMetresPerS2PerMicroG}};
+      }
+    }
+    if (!encoder_.empty()) json["encoder"] = encoder_.summary({"azimuth", "pitch"}, 1.0 / kRadPerDeg, "deg");
+    return json;
+  }
+
+ private:
+  ChannelStatistics imu_;
+  ChannelStatistics encoder_;
+  calibration::RestsAndTurns parts_;
+};
+
+/// Every channel of a log and how many messages it has: shown when the channels asked for are not there.
+void count_channels(const std::string& path, Json& json) {
+  io::LcmLogReader log(path);
+  io::LcmEvent event;
+  std::map<std::string, long long> count;
+  while (log.next(event)) ++count[std::string(event.channel)];
+  for (const auto& [channel, messages] : count) json["channels"][channel] = messages;
+  json["lost"] = {{"records", log.lost_records()}, {"bytes", log.lost_bytes()}};
+}
+
+Json inspect_recording(const io::RunFile& run, const io::RecordingFiles& files) {
+  Json json = {{"file", files.name()}};
+  if (!files.mount.empty()) json["mount"] = files.mount;
+  if (!files.lcm.empty()) count_channels(files.lcm, json);
+  InspectSink sink(files.name());
+  std::vector<std::pair<std::string, std::string>> digests;
+  io::read_recording(run, files, sink, digests);
+  json.update(sink.summary());
+  return json;
+}
+
+void print_channel(const char* name, const Json& c) {
+  std::printf("  %-8s %10lld messages  %9.3f Hz  jitter %.1f us  %lld gaps (%lld missing, longest %.4f s)  %lld duplicates  %lld stray stamps  %.3f s\n", name,
+              c["messages"].get<long long>(), c["rate_hz"].get<double>(), c["jitter_us"].get<double>(), c["gaps"].get<long long>(),
+              c["missing"].get<long long>(), c["longest_gap_s"].get<double>(), c["duplicates"].get<long long>(), c["stray_stamps"].get<long long>(),
+              c["duration_s"].get<double>());
+  std::printf("           range:");
+  for (const auto& [axis, range] : c["range"].items()) std::printf(" %s %.4g..%.4g", axis.c_str(), range[0].get<double>(), range[1].get<double>());
+  std::printf(" (%s)\n", c["range_unit"].get<std::string>().c_str());
+}
+
+void print_text(const Json& all) {
+  for (const Json& one : all["recordings"]) {
+    std::printf("%s%s\n", one["file"].get<std::string>().c_str(), one.contains("mount") ? (", " + one["mount"].get<std::string>()).c_str() : "");
+    if (one.contains("channels")) {
+      std::printf("  channels:");
+      for (const auto& [channel, messages] : one["channels"].items()) std::printf(" %s (%lld)", channel.c_str(), messages.get<long long>());
+      std::printf("; lost %lld records, %lld bytes\n", one["lost"]["records"].get<long long>(), one["lost"]["bytes"].get<long long>());
+    }
+    if (one.contains("imu")) print_channel("IMU", one["imu"]);
+    if (one.contains("encoder")) print_channel("encoder", one["encoder"]);
+    if (one.contains("rests")) {
+      std::printf("  %lld rests, %.1f s in all; %lld turns between them\n", one["rests"]["count"].get<long long>(), one["rests"]["total_s"].get<double>(),
+                  one["turns"]["count"].get<long long>());
+    }
+    if (one.contains("noise_at_rest")) {
+      std::printf("  white noise at rest: %.3g deg/h/rtHz, %.3g ug/rtHz\n", one["noise_at_rest"]["gyro_deg_per_h_per_rt_hz"].get<double>(),
+                  one["noise_at_rest"]["accel_ug_per_rt_hz"].get<double>());
+    }
+  }
+}
+
+void inspect(const Options& o) {
+  io::RunFile run;
+  const std::string extension = std::filesystem::path(o.input).extension().string();
+  if (extension == ".yaml" || extension == ".yml") {
+    run = io::read_run_file(o.input);
+  } else {
+    run.channels = o.channels;
+    io::RecordingFiles files;
+    (extension == ".csv" ? files.imu : files.lcm) = o.input;
+    run.recordings.push_back(files);
+  }
+  ProgressLine progress;
+  Json all = {{"schema", "trunnion/inspect/1"}};
+  for (const io::RecordingFiles& files : run.recordings) {
+    progress.show("reading " + files.name());
+    all["recordings"].push_back(inspect_recording(run, files));
+  }
+  if (o.format == "json") {
+    std::printf("%s\n", all.dump(2).c_str());
+  } else {
+    print_text(all);
+  }
+}
+
+}  // namespace
+
+void add_inspect(CLI::App& app, ExitCode& exit_code) {
+  CLI::App* command = app.add_subcommand("inspect", "What a recording holds: rates, jitter, gaps, ranges, rests and turns");
+  auto o = std::make_shared<Options>();
+  command->add_option("input", o->input, "Run file, LCM log or CSV")->required();
+  command->add_option("--format", o->format, "Of the result")->capture_default_str()->check(CLI::IsMember({"text", "json"}));
+  command->add_option("--imu-channel", o->channels.imu, "Of a log")->capture_default_str();
+  command->add_option("--encoder-channel", o->channels.encoder, "Of a log")->capture_default_str();
+  command->footer("Example:\n  imu_calibrate inspect run.yaml");
+  command->callback([o, &exit_code] {
+    inspect(*o);
+    exit_code = ExitCode::kDone;
+  });
+}
+
+}  // namespace trunnion::app

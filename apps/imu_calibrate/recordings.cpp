@@ -1,0 +1,125 @@
+// SPDX-FileCopyrightText: 2026 the trunnion authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "recordings.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <thread>
+
+#include "terminal.hpp"
+
+namespace trunnion::app {
+namespace {
+
+class ToCompressor final : public io::SampleSink {
+ public:
+  explicit ToCompressor(calibration::Compressor& compressor) : compressor_(compressor) {}
+  void imu(std::int64_t utime, const InertialSample<double>& sample) override { compressor_.imu(utime, sample); }
+  void encoder(std::int64_t utime, double azimuth, double pitch) override { compressor_.encoder(utime, azimuth, pitch); }
+
+ private:
+  calibration::Compressor& compressor_;
+};
+
+class ToRestsAndTurns final : public io::SampleSink {
+ public:
+  explicit ToRestsAndTurns(calibration::RestsAndTurns& parts) : parts_(parts) {}
+  void imu(std::int64_t utime, const InertialSample<double>& sample) override { parts_.imu(utime, sample); }
+  void encoder(std::int64_t, double, double) override {}
+
+ private:
+  calibration::RestsAndTurns& parts_;
+};
+
+/// Calls job(i) for i in [0, n), on as many threads as the machine has. Throws the first exception by index.
+template <class Job>
+void for_each_recording(std::size_t n, const Job& job) {
+  std::vector<std::exception_ptr> failed(n);
+  std::atomic<std::size_t> next{0};
+  const auto work = [&] {
+    for (std::size_t i = next++; i < n; i = next++) {
+      try {
+        job(i);
+      } catch (...) {
+        failed[i] = std::current_exception();
+      }
+    }
+  };
+  std::vector<std::thread> threads;
+  for (std::size_t t = 1; t < std::min<std::size_t>(n, std::max(1U, std::thread::hardware_concurrency())); ++t) threads.emplace_back(work);
+  work();
+  for (std::thread& thread : threads) thread.join();
+  for (const std::exception_ptr& one : failed) {
+    if (one) std::rethrow_exception(one);
+  }
+}
+
+/// Progress of several files as one line.
+class ReadProgress {
+ public:
+  explicit ReadProgress(std::size_t files) : fraction_(files, 0.0) {}
+  io::Progress of(std::size_t file) {
+    return [this, file](double fraction) {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      fraction_[file] = fraction;
+      double sum = 0.0;
+      for (const double f : fraction_) sum += f;
+      line_.show("reading " + std::to_string(static_cast<int>(100.0 * sum / static_cast<double>(fraction_.size()))) + " %");
+    };
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<double> fraction_;
+  ProgressLine line_;
+};
+
+void collect(RunInputs& inputs, std::vector<RunInputs>& each) {
+  for (RunInputs& one : each) {
+    inputs.losses.records += one.losses.records;
+    inputs.losses.bytes += one.losses.bytes;
+    for (auto& digest : one.digests) inputs.digests.push_back(std::move(digest));
+  }
+}
+
+}  // namespace
+
+std::vector<calibration::TableRecording> read_table_recordings(const io::RunFile& run, const std::vector<std::string>& mounts, RunInputs& inputs) {
+  std::vector<calibration::TableRecording> recordings(run.recordings.size());
+  std::vector<RunInputs> each(run.recordings.size());
+  ReadProgress progress(run.recordings.size());
+  for_each_recording(run.recordings.size(), [&](std::size_t i) {
+    const io::RecordingFiles& files = run.recordings[i];
+    calibration::CompressOptions options;
+    options.name = files.name();
+    options.period = run.sheet.rate_hz > 0.0 ? 1.0 / run.sheet.rate_hz : 0.0;
+    options.gyro_range = run.sheet.gyro_range;
+    options.accel_range = run.sheet.accel_range;
+    calibration::Compressor compressor(options);
+    ToCompressor sink(compressor);
+    each[i].losses = io::read_recording(run, files, sink, each[i].digests, progress.of(i));
+    recordings[i].data = compressor.finish();
+    recordings[i].mount = static_cast<int>(std::find(mounts.begin(), mounts.end(), files.mount) - mounts.begin());
+  });
+  collect(inputs, each);
+  return recordings;
+}
+
+std::vector<calibration::HandRecording> read_hand_recordings(const io::RunFile& run, RunInputs& inputs) {
+  std::vector<calibration::HandRecording> recordings(run.recordings.size());
+  std::vector<RunInputs> each(run.recordings.size());
+  ReadProgress progress(run.recordings.size());
+  for_each_recording(run.recordings.size(), [&](std::size_t i) {
+    calibration::RestsAndTurns parts(run.recordings[i].name());
+    ToRestsAndTurns sink(parts);
+    each[i].losses = io::read_recording(run, run.recordings[i], sink, each[i].digests, progress.of(i));
+    recordings[i] = parts.finish(run.sheet.gyro_range, run.sheet.accel_range);
+  });
+  collect(inputs, each);
+  return recordings;
+}
+
+}  // namespace trunnion::app

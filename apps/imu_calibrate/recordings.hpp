@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 the trunnion authors
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// From the files of a run to what the solver takes.
+
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "trunnion/calibration/rests_and_turns.hpp"
+#include "trunnion/calibration/twelve_position_solve.hpp"
+#include "trunnion/io/run_file.hpp"
+
+namespace trunnion::app {
+
+/// Digests and losses of a run's inputs.
+struct RunInputs {
+  std::vector<std::pair<std::string, std::string>> digests;  ///< path as in the run file's folder, SHA-256
+  io::LcmLosses losses;
+};
+
+/// Reads and compresses every recording, on as many threads as the machine has. @p mounts: names, in the rig's order
+std::vector<calibration::TableRecording> read_table_recordings(const io::RunFile& run, const std::vector<std::string>& mounts, RunInputs& inputs);
+
+/// Reads every recording by hand and takes it apart.
+std::vector<calibration::HandRecording> read_hand_recordings(const io::RunFile& run, RunInputs& inputs);
+
+}  // namespace trunnion::app

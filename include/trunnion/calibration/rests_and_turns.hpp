@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: 2026 the trunnion authors
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// A recording by hand, taken apart: where the unit lay still, and how it turned in between.
+///
+/// A block of 0.25 s is still when its scatter is near the recording's quietest and its mean rate near the rests' own. A
+/// rest is a second or more of still blocks, without its first and last. What lies between two rests, unbroken in time,
+/// is a turn. Tedaldi, Pretto & Menegatti, ICRA 2014, use a static detector of this kind; docs/theory/calibration.md,
+/// eq. 23.
+
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "trunnion/calibration/compress.hpp"
+#include "trunnion/error_model/inertial_unit.hpp"
+#include "trunnion/error_model/noise.hpp"
+
+namespace trunnion::calibration {
+
+struct Rest {
+  double begin = 0.0;  ///< s
+  double end = 0.0;
+  int samples = 0;
+  InertialSample<double> mean;
+};
+
+/// Samples between two rests, thinned to steps of 5 ms or one sample.
+struct TurnStep {
+  double dt = 0.0;  ///< s
+  InertialSample<double> mean;
+};
+
+struct Turn {
+  std::size_t from = 0;  ///< rest before; the rest after is from + 1
+  std::vector<TurnStep> steps;
+};
+
+struct HandRecording {
+  std::string name;
+  std::vector<Rest> rests;
+  std::vector<Turn> turns;
+  UnitNoise noise;  ///< white noise from the rests; no wander
+  RecordingFigures figures;
+};
+
+/// Takes a recording apart in two steps: feed it, then finish().
+class RestsAndTurns {
+ public:
+  explicit RestsAndTurns(std::string name) { result_.name = std::move(name); }
+
+  /// As Compressor::imu().
+  void imu(std::int64_t utime, const InertialSample<double>& sample);
+
+  /// @param accel_range, gyro_range SI, 0: unknown. @throws Error (input) when no sample was fed or the unit saturated
+  HandRecording finish(double gyro_range, double accel_range);
+
+ private:
+  struct Sample {
+    double t;
+    InertialSample<double> value;
+  };
+  HandRecording result_;
+  ChannelClock clock_;
+  std::int64_t origin_ = 0;
+  std::vector<Sample> samples_;
+};
+
+}  // namespace trunnion::calibration

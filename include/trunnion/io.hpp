@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: 2026 the trunnion authors
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Rung 3: run files, sheets, calibrations, CSV and LCM logs. Rigs from URDF are in io/urdf.hpp, a component of its own.
+
+#pragma once
+
+#include "trunnion/io/calibration_file.hpp"
+#include "trunnion/io/csv.hpp"
+#include "trunnion/io/digest.hpp"
+#include "trunnion/io/fault.hpp"
+#include "trunnion/io/lcm_log.hpp"
+#include "trunnion/io/lcm_recording.hpp"
+#include "trunnion/io/run_file.hpp"
+#include "trunnion/io/sample_sink.hpp"
+#include "trunnion/io/sensor_sheet.hpp"
+#include "trunnion/io/whole_file.hpp"

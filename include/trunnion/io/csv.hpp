@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 the trunnion authors
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Samples in text tables: columns found by a header name with the unit in it, or mapped by name or index with a unit.
+///
+/// Names understood without a map: t_s, t_ms, t_us, t_ns, utime; gyro_x_rad_s, gyro_x_deg_s, gyro_x_deg_h;
+/// accel_x_m_s2, accel_x_g, accel_x_mg; azimuth_rad, azimuth_deg, pitch_rad, pitch_deg. Separators: comma, semicolon,
+/// tab or blanks. Numbers are read in the C locale.
+
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "trunnion/io/digest.hpp"
+#include "trunnion/io/sample_sink.hpp"
+#include "trunnion/io/sensor_sheet.hpp"
+
+namespace trunnion::io {
+
+/// Where a quantity stands: by header name or, when that is empty, by index from zero.
+struct ColumnChoice {
+  std::string name;
+  int index = -1;
+  std::string unit;
+};
+
+/// Quantity (t, gyro_x ... accel_z, azimuth, pitch) to column.
+using ColumnMap = std::map<std::string, ColumnChoice>;
+
+/// The quantities a map may name.
+bool is_quantity(const std::string& name);
+/// Whether @p unit can measure @p quantity: for messages about a wrong unit, @p expected takes the list.
+bool unit_fits(const std::string& quantity, const std::string& unit, std::string& expected);
+
+/// Rows of t, three rates and three specific forces into @p sink.
+/// @throws Error (input) naming file, line and column
+void read_imu_csv(const std::string& path, const ColumnMap& columns, const SensorSheet& sheet, SampleSink& sink, std::string& digest);
+
+/// The same from two files with equal stamps, gyro and accelerometers apart; in both the map's indices count from the
+/// file's own first column, and without a map columns 0 to 3 are t [s], x, y, z in counts.
+void read_split_csv(const std::string& gyro_path, const std::string& accel_path, const ColumnMap& columns, const SensorSheet& sheet,
+                    SampleSink& sink, std::string& gyro_digest, std::string& accel_digest);
+
+/// Rows of t, azimuth and pitch into @p sink.
+void read_encoder_csv(const std::string& path, const ColumnMap& columns, SampleSink& sink, std::string& digest);
+
+/// Writes samples as CSV with the header t_s,gyro_x_rad_s,...,accel_z_m_s2.
+std::string imu_csv_header();
+void append_imu_csv(double t, const InertialSample<double>& sample, std::string& out);
+
+}  // namespace trunnion::io

@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: 2026 the trunnion authors
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Where an input is wrong, in one form: "file:line: field: what".
+
+#pragma once
+
+#include <string>
+
+#include "trunnion/core/error.hpp"
+
+namespace trunnion::io {
+
+/// @param line counted from one; 0: the file as a whole. @param field may be empty
+Error input_error(const std::string& file, long long line, const std::string& field, const std::string& what);
+
+/// The same for binary files, at a byte offset.
+Error input_error_at_byte(const std::string& file, long long byte, const std::string& field, const std::string& what);
+
+}  // namespace trunnion::io

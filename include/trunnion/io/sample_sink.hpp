@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 the trunnion authors
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Where readers deliver samples, whatever the file was.
+
+#pragma once
+
+#include <cstdint>
+
+#include "trunnion/error_model/inertial_unit.hpp"
+
+namespace trunnion::io {
+
+class SampleSink {
+ public:
+  SampleSink() = default;
+  SampleSink(const SampleSink&) = delete;
+  SampleSink& operator=(const SampleSink&) = delete;
+  virtual ~SampleSink() = default;
+
+  /// Angular rate [rad/s] and specific force [m/s^2], means over the period that ends at @p utime [us].
+  virtual void imu(std::int64_t utime, const InertialSample<double>& sample) = 0;
+
+  /// Readings of the outer and the inner encoder [rad] at @p utime [us].
+  virtual void encoder(std::int64_t utime, double azimuth, double pitch) = 0;
+};
+
+}  // namespace trunnion::io

@@ -1,0 +1,18 @@
+// SPDX-FileCopyrightText: 2026 the trunnion authors
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Rung 1: the unit, the rig, the positions and the plain records. Header-only, any scalar, no heap.
+
+#pragma once
+
+#include "trunnion/core.hpp"
+#include "trunnion/error_model/inertial_unit.hpp"
+#include "trunnion/error_model/noise.hpp"
+#include "trunnion/error_model/triad.hpp"
+#include "trunnion/positions/calibration_record.hpp"
+#include "trunnion/positions/entry.hpp"
+#include "trunnion/positions/observation.hpp"
+#include "trunnion/positions/twelve.hpp"
+#include "trunnion/turntable/encoder.hpp"
+#include "trunnion/turntable/rig.hpp"
+#include "trunnion/turntable/two_axis.hpp"

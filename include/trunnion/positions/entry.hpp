@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: 2026 the trunnion authors
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// The kinds of entries of a calibration, as files name them: the keys of `refuse_above` and `limits`, their units, and
+/// the posterior sigma beyond which an entry is refused unless the run file says otherwise: about a twentieth of what an
+/// uncalibrated MEMS unit may have.
+
+#pragma once
+
+#include <array>
+
+#include "trunnion/core/units.hpp"
+
+namespace trunnion {
+
+enum class Entry : int {
+  kGyroBias,
+  kGyroScale,
+  kGyroCrossCoupling,
+  kGyroCubic,
+  kGyroGSensitivity,
+  kAccelBias,
+  kAccelScale,
+  kAccelCrossCoupling,
+  kAccelQuadratic,
+  kRigAngle,
+  kLeverArm,
+  kClockOffset,
+};
+
+inline constexpr int kEntries = 12;
+
+struct EntryKind {
+  const char* key;
+  const char* unit;
+  double si;            ///< one unit in SI
+  double refuse_above;  ///< in the unit
+};
+
+inline constexpr std::array<EntryKind, kEntries> kEntryKinds = {{
+    {"gyro_bias_deg_per_h", "deg/h", kRadPerSPerDegPerH, 180.0},
+    {"gyro_scale_ppm", "ppm", 1e-6, 500.0},
+    {"gyro_cross_coupling_deg", "deg", kRadPerDeg, 0.1},
+    {"gyro_cubic_ppm", "ppm at the largest rate", 1e-6, 500.0},
+    {"gyro_g_sensitivity_deg_per_h_per_g", "deg/h/g", kRadPerSPerDegPerH / kStandardGravity, 36.0},
+    {"accel_bias_ug", "ug", kMetresPerS2PerMicroG, 2500.0},
+    {"accel_scale_ppm", "ppm", 1e-6, 500.0},
+    {"accel_cross_coupling_deg", "deg", kRadPerDeg, 0.1},
+    {"accel_quadratic_ppm", "ppm at 1 g", 1e-6 / kStandardGravity, 500.0},
+    {"rig_angle_deg", "deg", kRadPerDeg, 0.1},
+    {"lever_arm_m", "m", 1.0, 0.1},
+    {"clock_offset_ms", "ms", 1e-3, 5.0},
+}};
+
+constexpr const EntryKind& kind_of(Entry entry) { return kEntryKinds[static_cast<std::size_t>(entry)]; }
+
+/// Limits, one a kind, each in the unit of its key.
+using EntryLimits = std::array<double, kEntries>;
+
+constexpr EntryLimits default_refuse_above() {
+  EntryLimits limits{};
+  for (std::size_t i = 0; i < limits.size(); ++i) limits[i] = kEntryKinds[i].refuse_above;
+  return limits;
+}
+
+}  // namespace trunnion

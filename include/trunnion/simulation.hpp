@@ -1,0 +1,10 @@
+// SPDX-FileCopyrightText: 2026 the trunnion authors
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Rung 2: truth as functions of time, and its corruption.
+
+#pragma once
+
+#include "trunnion/simulation/axis_motion.hpp"
+#include "trunnion/simulation/gaussian.hpp"
+#include "trunnion/simulation/table_run.hpp"

@@ -1,0 +1,486 @@
+// SPDX-FileCopyrightText: 2026 the trunnion authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "trunnion/calibration/multi_position_solve.hpp"
+
+#include <ceres/ceres.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "trunnion/core/error.hpp"
+#include "trunnion/core/units.hpp"
+
+namespace trunnion::calibration {
+namespace {
+
+constexpr int kVarianceRounds = 4;
+constexpr double kHuber = 4.0;
+constexpr double kFlatHeadingSigma = kPi / 1.7320508075688772;
+
+/// The unit that the scaled unknowns @p x describe.
+template <class T>
+InertialUnit<T> unit_from(const Layout& layout, const T* x, std::size_t recording) {
+  const auto value = [&](int i) { return x[i] * T(layout.parameters[static_cast<std::size_t>(i)].refuse_above); };
+  InertialUnit<T> unit;
+  for (int i = 0; i < 3; ++i) {
+    unit.gyro.bias(i) = value(layout.gyro_bias[recording] + i);
+    unit.accel.bias(i) = value(layout.accel_bias[recording] + i);
+    if (layout.gyro_cubic >= 0) unit.gyro.cubic(i) = value(layout.gyro_cubic + i);
+    if (layout.accel_quadratic >= 0) unit.accel.quadratic(i) = value(layout.accel_quadratic + i);
+    for (int j = 0; j < 3; ++j) {
+      unit.gyro.M(i, j) = value(layout.gyro_matrix + 3 * i + j);
+      if (layout.g_sensitivity >= 0) unit.g_sensitivity(i, j) = value(layout.g_sensitivity + 3 * i + j);
+      if (layout.accel_matrix[i][j] >= 0) unit.accel.M(i, j) = value(layout.accel_matrix[i][j]);
+    }
+  }
+  return unit;
+}
+
+/// Rotation of a turn at given unknowns, and its derivative to the scaled unknowns (right perturbation).
+struct TurnRotation {
+  Quaternion<double> q = Quaternion<double>::Identity();
+  Eigen::Matrix<double, 3, Eigen::Dynamic> J;
+  double duration = 0.0;
+};
+
+/// Jacobian of Exp: Exp(phi + d) = Exp(phi) Exp(Jr d), second order in phi.
+Mat3<double> right_jacobian(const Vec3<double>& phi) {
+  const Mat3<double> S = skew(phi);
+  return Mat3<double>::Identity() - 0.5 * S + S * S / 6.0;
+}
+
+/// Integrates eq. (2). @param w_ie_b Earth rate in the case at the start; @param layout null: no derivative
+TurnRotation integrate(const Turn& turn, const InertialUnit<double>& unit, const Vec3<double>& w_ie_b, const Layout* layout, std::size_t recording) {
+  TurnRotation rotation;
+  const UnitCorrection<double> correction(unit);
+  const Mat3<double> K = unit.gyro.matrix();
+  if (layout != nullptr) rotation.J = Eigen::Matrix<double, 3, Eigen::Dynamic>::Zero(3, layout->size());
+  Vec3<double> before = Vec3<double>::Zero();
+  for (const TurnStep& step : turn.steps) {
+    const InertialSample<double> input = correction.correct(step.mean);
+    const Vec3<double> angle = (input.w - rotation.q.conjugate() * w_ie_b) * step.dt;
+    const Vec3<double> phi = angle + before.cross(angle) / 12.0;  // coning over this and the previous step: Savage 1998, eq. (43)
+    before = angle;
+    const Quaternion<double> turned = quaternion_exp<double>(phi);
+    if (layout != nullptr) {
+      Mat3<double> slope = K;
+      slope.diagonal() += 3.0 * unit.gyro.cubic.cwiseProduct(input.w.cwiseAbs2());
+      const Mat3<double> gain = -right_jacobian(phi) * slope.inverse() * step.dt;
+      auto& J = rotation.J;
+      J = turned.conjugate().toRotationMatrix() * J;
+      const auto add = [&](int place, const Vec3<double>& column, double factor) {
+        J.col(place) += column * (factor * layout->parameters[static_cast<std::size_t>(place)].refuse_above);
+      };
+      for (int i = 0; i < 3; ++i) {
+        const Vec3<double> column = gain.col(i);
+        add(layout->gyro_bias[recording] + i, column, 1.0);
+        if (layout->gyro_cubic >= 0) add(layout->gyro_cubic + i, column, input.w(i) * input.w(i) * input.w(i));
+        for (int j = 0; j < 3; ++j) {
+          add(layout->gyro_matrix + 3 * i + j, column, input.w(j));
+          if (layout->g_sensitivity >= 0) add(layout->g_sensitivity + 3 * i + j, column, input.f(j));
+        }
+      }
+    }
+    rotation.q = rotation.q * turned;
+    rotation.duration += step.dt;
+  }
+  rotation.q.normalize();
+  return rotation;
+}
+
+struct RestResidual {
+  const Layout* layout;
+  const Site* site;
+  const Rest* rest;
+  std::size_t recording;
+  Vec3<double> w_ie_u;
+  double sigma_f;
+  double sigma_w;
+
+  template <class T>
+  bool operator()(T const* const* parameters, T* residual) const {
+    const InertialUnit<T> unit = unit_from(*layout, parameters[0], recording);
+    const Eigen::Map<const Quaternion<T>> q_ub(parameters[1]);
+    const T gravity = parameters[0][layout->gravity] * T(layout->parameters[static_cast<std::size_t>(layout->gravity)].refuse_above);
+    InertialSample<T> input;
+    input.f = q_ub.conjugate() * Vec3<T>(T(0), T(0), gravity);
+    input.w = q_ub.conjugate() * w_ie_u.cast<T>();
+    const InertialSample<T> reading = unit.distort(input);
+    const Vec3<T> r_f = (rest->mean.f.cast<T>() - reading.f) / T(sigma_f);
+    const Vec3<T> r_w = (rest->mean.w.cast<T>() - reading.w) / T(sigma_w);
+    for (int i = 0; i < 3; ++i) {
+      residual[i] = r_f(i);
+      residual[3 + i] = r_w(i);
+    }
+    return true;
+  }
+};
+
+struct TurnResidual {
+  const TurnRotation* rotation;
+  const double* x0;  // where it was integrated
+  double sigma;
+
+  template <class T>
+  bool operator()(T const* const* parameters, T* residual) const {
+    const Eigen::Map<const Quaternion<T>> q_before(parameters[1]);
+    const Eigen::Map<const Quaternion<T>> q_after(parameters[2]);
+    Vec3<T> correction = Vec3<T>::Zero();
+    for (Eigen::Index i = 0; i < rotation->J.cols(); ++i) {
+      const T step = parameters[0][i] - T(x0[i]);
+      for (int j = 0; j < 3; ++j) correction(j) += T(rotation->J(j, i)) * step;
+    }
+    const Quaternion<T> predicted = q_before * rotation->q.cast<T>() * quaternion_exp<T>(correction);
+    const Vec3<T> r = quaternion_log<T>(Quaternion<T>(predicted.conjugate() * q_after)) / T(sigma);
+    for (int i = 0; i < 3; ++i) residual[i] = r(i);
+    return true;
+  }
+};
+
+/// (x - mean) / sigma of one scaled unknown.
+struct UnknownPrior {
+  int index;
+  double mean;
+  double sigma;
+  template <class T>
+  bool operator()(T const* const* parameters, T* residual) const {
+    residual[0] = (parameters[0][index] - T(mean)) / T(sigma);
+    return true;
+  }
+};
+
+/// Keeps the heading of a chain of rests within the circle: a flat prior as its standard deviation.
+struct HeadingPrior {
+  Quaternion<double> q0;
+  template <class T>
+  bool operator()(T const* const* parameters, T* residual) const {
+    const Eigen::Map<const Quaternion<T>> q(parameters[0]);
+    residual[0] = quaternion_log<T>(Quaternion<T>(q * q0.conjugate().cast<T>())).z() / T(kFlatHeadingSigma);
+    return true;
+  }
+};
+
+enum Component : std::size_t { kRestForce, kRestRate, kTurns, kComponents };
+
+class HandProblem {
+ public:
+  HandProblem(const std::vector<HandRecording>& recordings, const Site& site, const HandSolveOptions& options)
+      : recordings_(recordings), site_(site), options_(options), layout_(request()) {
+    for (std::size_t r = 0; r < recordings.size(); ++r) {
+      first_rest_.push_back(attitude_.size());
+      attitude_.resize(attitude_.size() + recordings[r].rests.size());
+    }
+    if (attitude_.empty()) throw Error(ExitCode::kInput, "no rest of a second or more was found in the recordings: lay the unit down between the turns");
+    noise_ = options.noise;
+    if (!options.has_noise) noise_ = pooled_noise();
+    if (layout_.g_sensitivity >= 0) {
+      for (int i = layout_.g_sensitivity; i < layout_.g_sensitivity + 9; ++i) {
+        // what a prior fixes is not refused
+        double& limit = layout_.parameters[static_cast<std::size_t>(i)].refuse_above;
+        limit = std::max(limit, options.g_sensitivity_sigma);
+      }
+    }
+    start();
+  }
+
+  HandSolution solve() {
+    int iterations = 0;
+    for (int round = 0; round < kVarianceRounds; ++round) {
+      iterations += minimise();
+      update_components();
+    }
+    iterations += minimise();
+    return conclude(iterations);
+  }
+
+ private:
+  LayoutRequest request() const {
+    LayoutRequest r;
+    r.terms = options_.terms;
+    r.refuse_above = options_.refuse_above;
+    r.recordings = static_cast<int>(recordings_.size());
+    r.bias_per_recording = options_.bias_per_recording;
+    r.accel_upper_triangular = true;
+    r.rig = false;
+    r.largest_rate = 1e-3;
+    for (const HandRecording& recording : recordings_) {
+      for (const Turn& turn : recording.turns) {
+        for (const TurnStep& step : turn.steps) r.largest_rate = std::max(r.largest_rate, step.mean.w.cwiseAbs().maxCoeff());
+      }
+    }
+    return r;
+  }
+
+  UnitNoise pooled_noise() const {
+    UnitNoise noise;
+    double weight = 0.0;
+    for (const HandRecording& recording : recordings_) {
+      const auto n = static_cast<double>(recording.rests.size());
+      noise.gyro.density += n * recording.noise.gyro.density;
+      noise.accel.density += n * recording.noise.accel.density;
+      weight += n;
+    }
+    noise.gyro.density /= weight;
+    noise.accel.density /= weight;
+    if (!(noise.gyro.density > 0.0) || !(noise.accel.density > 0.0)) {
+      throw Error(ExitCode::kInput, "the recordings are free of noise at rest: state the noise in a sheet");
+    }
+    return noise;
+  }
+
+  [[nodiscard]] double scale(int i) const { return layout_.parameters[static_cast<std::size_t>(i)].refuse_above; }
+
+  /// Biases from the rests, attitudes from gravity and the turns.
+  void start() {
+    CalibrationValues values;
+    values.gravity = site_.gravity;
+    for (std::size_t r = 0; r < recordings_.size(); ++r) {
+      const HandRecording& recording = recordings_[r];
+      Vec3<double> bias = Vec3<double>::Zero();
+      for (const Rest& rest : recording.rests) bias += rest.mean.w / static_cast<double>(recording.rests.size());
+      values.recording_bias[r].w = bias;
+      for (const Rest& rest : recording.rests) {
+        const double ratio = rest.mean.f.norm() / site_.gravity;
+        if (ratio < 0.7 || ratio > 1.4) {
+          throw Error(ExitCode::kInput, recording.name + ": at rest at " + std::to_string(rest.begin) + " s the specific force is " + std::to_string(ratio) +
+                                            " of gravity: wrong unit or nominal scale of the accelerometers");
+        }
+      }
+    }
+    layout_.write(values, x_);
+    for (int i = 0; i < layout_.size(); ++i) x_(i) /= scale(i);
+    for (std::size_t r = 0; r < recordings_.size(); ++r) {
+      const HandRecording& recording = recordings_[r];
+      const InertialUnit<double> unit = unit_from(layout_, x_.data(), r);
+      for (std::size_t k = 0; k < recording.rests.size(); ++k) {
+        Quaternion<double> q_ub = Quaternion<double>::Identity();
+        const auto turn = std::find_if(recording.turns.begin(), recording.turns.end(), [&](const Turn& t) { return t.from + 1 == k; });
+        if (turn != recording.turns.end()) q_ub = attitude_[first_rest_[r] + k - 1] * integrate(*turn, unit, Vec3<double>::Zero(), nullptr, r).q;
+        // the least turn that takes the measured force to the vertical
+        const Vec3<double> up = (q_ub * recording.rests[k].mean.f).normalized();
+        attitude_[first_rest_[r] + k] = (Quaternion<double>::FromTwoVectors(up, Vec3<double>::UnitZ()) * q_ub).normalized();
+        if (turn == recording.turns.end()) heads_.push_back(first_rest_[r] + k);
+      }
+    }
+    head_start_.clear();
+    for (const std::size_t head : heads_) head_start_.push_back(attitude_[head]);
+  }
+
+  [[nodiscard]] bool used(std::size_t turn) const { return options_.hold_out <= 0 || turn % static_cast<std::size_t>(options_.hold_out) != static_cast<std::size_t>(options_.hold_out) - 1; }
+
+  [[nodiscard]] double white_force(const Rest& rest) const { return noise_.accel.density * noise_.accel.density / (rest.end - rest.begin); }
+  [[nodiscard]] double white_rate(const Rest& rest) const { return noise_.gyro.density * noise_.gyro.density / (rest.end - rest.begin); }
+  [[nodiscard]] double white_turn(const TurnRotation& turn) const { return noise_.gyro.density * noise_.gyro.density * turn.duration; }
+
+  /// Builds the problem about the present estimate; rows in the order rests, turns, priors.
+  void build(ceres::Problem& problem) {
+    const Vec3<double> w_ie_u = earth_rate_enu(site_.latitude);
+    const int n = layout_.size();
+    x0_ = x_;
+    rotations_.clear();
+    rows_.clear();
+    problem.AddParameterBlock(x_.data(), n);
+    for (Quaternion<double>& q : attitude_) problem.AddParameterBlock(q.coeffs().data(), 4, new ceres::EigenQuaternionManifold);
+    const auto add = [&](auto* functor, int residuals, ceres::LossFunction* loss, const std::vector<double*>& blocks, const std::vector<int>& sizes) {
+      auto* cost = new ceres::DynamicAutoDiffCostFunction<std::remove_pointer_t<decltype(functor)>, 8>(functor);
+      for (const int size : sizes) cost->AddParameterBlock(size);
+      cost->SetNumResiduals(residuals);
+      problem.AddResidualBlock(cost, loss, blocks);
+    };
+    for (std::size_t r = 0; r < recordings_.size(); ++r) {
+      for (std::size_t k = 0; k < recordings_[r].rests.size(); ++k) {
+        const Rest& rest = recordings_[r].rests[k];
+        const double sigma_f = std::sqrt(white_force(rest) + component_[kRestForce]);
+        const double sigma_w = std::sqrt(white_rate(rest) + component_[kRestRate]);
+        add(new RestResidual{&layout_, &site_, &rest, r, w_ie_u, sigma_f, sigma_w}, 6, new ceres::HuberLoss(kHuber),
+            {x_.data(), attitude_[first_rest_[r] + k].coeffs().data()}, {n, 4});
+        for (int i = 0; i < 6; ++i) rows_.push_back({i < 3 ? kRestForce : kRestRate, i < 3 ? white_force(rest) : white_rate(rest)});
+      }
+    }
+    std::size_t index = 0;
+    for (std::size_t r = 0; r < recordings_.size(); ++r) {
+      const InertialUnit<double> unit = unit_from(layout_, x_.data(), r);
+      for (const Turn& turn : recordings_[r].turns) {
+        if (!used(index++)) continue;
+        Quaternion<double>& before = attitude_[first_rest_[r] + turn.from];
+        Quaternion<double>& after = attitude_[first_rest_[r] + turn.from + 1];
+        rotations_.push_back(std::make_unique<TurnRotation>(integrate(turn, unit, before.conjugate() * w_ie_u, &layout_, r)));
+        const double white = white_turn(*rotations_.back());
+        add(new TurnResidual{rotations_.back().get(), x0_.data(), std::sqrt(white + component_[kTurns])}, 3, new ceres::HuberLoss(kHuber),
+            {x_.data(), before.coeffs().data(), after.coeffs().data()}, {n, 4, 4});
+        for (int i = 0; i < 3; ++i) rows_.push_back({kTurns, white});
+      }
+    }
+    add(new UnknownPrior{layout_.gravity, site_.gravity / scale(layout_.gravity), site_.gravity_sigma / scale(layout_.gravity)}, 1, nullptr, {x_.data()}, {n});
+    for (int i = layout_.g_sensitivity; layout_.g_sensitivity >= 0 && i < layout_.g_sensitivity + 9; ++i) {
+      add(new UnknownPrior{i, 0.0, options_.g_sensitivity_sigma / scale(i)}, 1, nullptr, {x_.data()}, {n});
+    }
+    for (std::size_t h = 0; h < heads_.size(); ++h) add(new HeadingPrior{head_start_[h]}, 1, nullptr, {attitude_[heads_[h]].coeffs().data()}, {4});
+  }
+
+  int minimise() {
+    ceres::Problem problem;
+    build(problem);
+    ceres::Solver::Options solver;
+    solver.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+    solver.max_num_iterations = 30;
+    solver.initial_trust_region_radius = 1e8;
+    solver.function_tolerance = 1e-7;
+    solver.logging_type = ceres::SILENT;
+    ceres::Solver::Summary summary;
+    ceres::Solve(solver, &problem, &summary);
+    if (summary.termination_type == ceres::FAILURE) throw Error(ExitCode::kNumerics, "the solve did not converge: " + summary.message);
+    for (Quaternion<double>& q : attitude_) q.normalize();
+    return static_cast<int>(summary.iterations.size());
+  }
+
+  struct RowOf {
+    Component component;
+    double white;
+  };
+
+  /// Whitened residuals and Jacobian at the estimate, unknowns first, then three an attitude.
+  Eigen::MatrixXd jacobian(Eigen::VectorXd& residual) {
+    ceres::Problem problem;
+    build(problem);
+    ceres::Problem::EvaluateOptions options;
+    options.parameter_blocks.push_back(x_.data());
+    for (Quaternion<double>& q : attitude_) options.parameter_blocks.push_back(q.coeffs().data());
+    std::vector<double> r;
+    ceres::CRSMatrix J;
+    problem.Evaluate(options, nullptr, &r, nullptr, &J);
+    Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(J.num_rows, J.num_cols);
+    for (int row = 0; row < J.num_rows; ++row) {
+      for (int at = J.rows[static_cast<std::size_t>(row)]; at < J.rows[static_cast<std::size_t>(row) + 1]; ++at) {
+        dense(row, J.cols[static_cast<std::size_t>(at)]) = J.values[static_cast<std::size_t>(at)];
+      }
+    }
+    residual = Eigen::Map<const Eigen::VectorXd>(r.data(), static_cast<Eigen::Index>(r.size()));
+    return dense;
+  }
+
+  /// Helmert: the variance of each component is such that its whitened squares sum to its redundancy.
+  void update_components() {
+    Eigen::VectorXd residual;
+    const Eigen::MatrixXd J = jacobian(residual);
+    Eigen::MatrixXd A = Eigen::MatrixXd::Zero(J.cols(), J.cols());
+    A.selfadjointView<Eigen::Lower>().rankUpdate(J.transpose());
+    A.diagonal().array() += 1e-12;  // directions that the data do not fix carry no redundancy
+    const Eigen::LLT<Eigen::MatrixXd> factor(A.selfadjointView<Eigen::Lower>());
+    const Eigen::MatrixXd half = factor.matrixL().solve(J.transpose());
+    for (std::size_t c = 0; c < kComponents; ++c) {
+      double redundancy = 0.0;
+      std::vector<std::pair<double, double>> squares;  // raw square and white variance
+      for (std::size_t row = 0; row < rows_.size(); ++row) {
+        if (rows_[row].component != c) continue;
+        const auto i = static_cast<Eigen::Index>(row);
+        redundancy += 1.0 - half.col(i).squaredNorm();
+        squares.emplace_back(residual(i) * residual(i) * (rows_[row].white + component_[c]), rows_[row].white);
+      }
+      if (redundancy < 3.0) continue;
+      const auto excess = [&](double variance) {
+        double sum = 0.0;
+        for (const auto& [square, white] : squares) sum += square / (white + variance);
+        return sum - redundancy;
+      };
+      double low = 0.0;
+      double high = 0.0;
+      for (const auto& [square, white] : squares) high += square / redundancy;
+      if (excess(0.0) <= 0.0) {
+        component_[c] = 0.0;
+        continue;
+      }
+      for (int step = 0; step < 60; ++step) {
+        const double middle = 0.5 * (low + high);
+        (excess(middle) > 0.0 ? low : high) = middle;
+      }
+      component_[c] = high;
+    }
+  }
+
+  HandSolution conclude(int iterations) {
+    const int n = layout_.size();
+    Eigen::VectorXd residual;
+    const Eigen::MatrixXd J = jacobian(residual);
+    // attitudes out: Schur complement
+    const Eigen::MatrixXd Jx = J.leftCols(n);
+    const Eigen::MatrixXd Jq = J.rightCols(J.cols() - n);
+    Eigen::MatrixXd Aqq = Jq.transpose() * Jq;
+    Aqq.diagonal().array() += 1e-12;
+    const Eigen::MatrixXd Axq = Jx.transpose() * Jq;
+    Eigen::MatrixXd information = Jx.transpose() * Jx - Axq * Aqq.llt().solve(Axq.transpose());
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; j < n; ++j) information(i, j) /= scale(i) * scale(j);
+    }
+    HandSolution result;
+    Solution& s = result.solution;
+    s.parameters = layout_.parameters;
+    s.x = x_;
+    for (int i = 0; i < n; ++i) s.x(i) *= scale(i);
+    s.observability = judge(information, layout_.parameters);
+    s.noise = noise_;
+    s.gauge = {"accelerometer_z_along_case_z", "accelerometer_y_in_case_yz_plane"};
+    CalibrationRecord& record = s.record;
+    layout_.read(s.x, record.value);
+    record.sigma = layout_.sigmas(s.observability.covariance);
+    record.recordings = static_cast<int>(recordings_.size());
+    std::size_t index = 0;
+    for (std::size_t r = 0; r < recordings_.size(); ++r) {
+      record.fit.samples += recordings_[r].figures.samples;
+      record.fit.windows += static_cast<long long>(recordings_[r].rests.size() + recordings_[r].turns.size());
+      result.rests += static_cast<int>(recordings_[r].rests.size());
+      const std::vector<double> errors = turn_errors(recordings_[r], unit_from(layout_, x_.data(), r));
+      for (const double error : errors) {
+        ++result.turns;
+        if (!used(index++)) result.held_out.push_back(error);
+      }
+    }
+    const auto rows = static_cast<double>(J.rows());
+    const double attitudes = 2.0 * static_cast<double>(attitude_.size());  // their headings are held by nothing but the turns
+    record.fit.reduced_chi_square = residual.squaredNorm() / std::max(1.0, rows - n - attitudes - static_cast<double>(attitude_.size()));
+    record.fit.iterations = iterations;
+    result.rest_scatter = std::sqrt(component_[kRestForce]);
+    result.turn_scatter = std::sqrt(component_[kTurns]);
+    return result;
+  }
+
+  const std::vector<HandRecording>& recordings_;
+  const Site& site_;
+  const HandSolveOptions& options_;
+  Layout layout_;
+  UnitNoise noise_;
+  Eigen::VectorXd x_;   // scaled unknowns
+  Eigen::VectorXd x0_;  // where the turns were integrated
+  std::vector<Quaternion<double>> attitude_;  // q_ub of every rest
+  std::vector<std::size_t> first_rest_;       // of each recording
+  std::vector<std::size_t> heads_;            // rests that no turn leads to
+  std::vector<Quaternion<double>> head_start_;
+  std::vector<std::unique_ptr<TurnRotation>> rotations_;
+  std::vector<RowOf> rows_;
+  std::array<double, kComponents> component_{};
+};
+
+}  // namespace
+
+HandSolution solve_by_hand(const std::vector<HandRecording>& recordings, const Site& site, const HandSolveOptions& options) {
+  if (recordings.empty()) throw Error(ExitCode::kInput, "no recordings to solve");
+  if (recordings.size() > kMaxRecordings) throw Error(ExitCode::kInput, "more than " + std::to_string(kMaxRecordings) + " recordings in one run");
+  HandProblem problem(recordings, site, options);
+  return problem.solve();
+}
+
+std::vector<double> turn_errors(const HandRecording& recording, const InertialUnit<double>& unit) {
+  const UnitCorrection<double> correction(unit);
+  std::vector<double> errors;
+  for (const Turn& turn : recording.turns) {
+    const Vec3<double> before = correction.correct(recording.rests[turn.from].mean).f.normalized();
+    const Vec3<double> after = correction.correct(recording.rests[turn.from + 1].mean).f.normalized();
+    const Vec3<double> predicted = integrate(turn, unit, Vec3<double>::Zero(), nullptr, 0).q.conjugate() * before;
+    errors.push_back(std::atan2(predicted.cross(after).norm(), predicted.dot(after)));
+  }
+  return errors;
+}
+
+}  // namespace trunnion::calibration

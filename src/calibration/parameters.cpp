@@ -1,0 +1,165 @@
+// SPDX-FileCopyrightText: 2026 the trunnion authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "trunnion/calibration/parameters.hpp"
+
+#include <cmath>
+
+#include "trunnion/core/units.hpp"
+
+namespace trunnion::calibration {
+namespace {
+
+const char* const kAxisName[3] = {"x", "y", "z"};
+
+std::string axis(int i) { return kAxisName[i]; }
+
+// sigma of a heading that may be anything: the information of a flat prior over the circle
+constexpr double kFlatHeadingSigma = kPi / 1.7320508075688772;
+
+}  // namespace
+
+int Layout::add(const std::string& name, Entry kind) {
+  const EntryKind& k = kind_of(kind);
+  parameters.push_back({name, kind, refuse_above_[static_cast<std::size_t>(kind)] * k.si, k.unit, 1.0 / k.si});
+  return size() - 1;
+}
+
+Layout::Layout(const LayoutRequest& request) : refuse_above_(request.refuse_above) {
+  const auto three = [&](const std::string& before, const std::string& after, Entry kind) {
+    const int first = size();
+    for (int i = 0; i < 3; ++i) add(before + axis(i) + after, kind);
+    return first;
+  };
+  const auto matrix_entry = [&](const std::string& sensor, int row, int column, Entry scale, Entry cross) {
+    return row == column ? add(sensor + " " + axis(row) + " scale", scale)
+                         : add(sensor + " " + axis(column) + " cross-coupling into " + axis(row), cross);
+  };
+
+  gyro_matrix = size();
+  for (int i = 0; i < 9; ++i) matrix_entry("gyro", i / 3, i % 3, Entry::kGyroScale, Entry::kGyroCrossCoupling);
+  if (request.terms.cubic) {
+    gyro_cubic = three("gyro ", " cubic", Entry::kGyroCubic);
+    const double w2 = request.largest_rate * request.largest_rate;
+    for (int i = gyro_cubic; i < size(); ++i) {
+      parameters[static_cast<std::size_t>(i)].refuse_above /= w2;
+      parameters[static_cast<std::size_t>(i)].in_unit *= w2;
+    }
+  }
+  if (request.terms.g_sensitivity) {
+    g_sensitivity = size();
+    for (int i = 0; i < 9; ++i) add("gyro " + axis(i / 3) + " g-sensitivity to " + axis(i % 3), Entry::kGyroGSensitivity);
+  }
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      accel_matrix[i][j] = request.accel_upper_triangular && j < i
+                               ? -1
+                               : matrix_entry("accelerometer", i, j, Entry::kAccelScale, Entry::kAccelCrossCoupling);
+    }
+  }
+  if (request.terms.quadratic) accel_quadratic = three("accelerometer ", " quadratic", Entry::kAccelQuadratic);
+  const int biases = request.bias_per_recording ? request.recordings : 1;
+  for (int r = 0; r < biases; ++r) {
+    const std::string of = biases > 1 ? " in recording " + std::to_string(r + 1) : "";
+    gyro_bias.push_back(three("gyro ", " bias" + of, Entry::kGyroBias));
+    accel_bias.push_back(three("accelerometer ", " bias" + of, Entry::kAccelBias));
+  }
+  gyro_bias.resize(static_cast<std::size_t>(request.recordings), gyro_bias.front());
+  accel_bias.resize(static_cast<std::size_t>(request.recordings), accel_bias.front());
+
+  if (request.rig) {
+    tilt = add("base tilt about east", Entry::kRigAngle);
+    add("base tilt about north", Entry::kRigAngle);
+    heading = add("heading", Entry::kRigAngle);
+    parameters.back().refuse_above = kFlatHeadingSigma;
+    nonorthogonality = add("axis non-orthogonality", Entry::kRigAngle);
+    eccentricity = size();
+    for (const char* stage : {"azimuth", "pitch"}) {
+      for (const char* part : {"cosine", "sine"}) add(std::string(stage) + " encoder eccentricity, " + part, Entry::kRigAngle);
+    }
+    for (std::size_t m = 0; m < request.mounts.size(); ++m) {
+      const bool used = request.mount_used[m];
+      mount_error.push_back(used && m > 0 ? three(request.mounts[m] + " about its ", "", Entry::kRigAngle) : -1);
+      lever_arm.push_back(used ? three("lever arm in " + request.mounts[m] + " along ", "", Entry::kLeverArm) : -1);
+    }
+    if (request.clock_offset) clock_offset = add("IMU-to-encoder clock offset", Entry::kClockOffset);
+  }
+  gravity = add("gravity", Entry::kAccelScale);
+  parameters.back().refuse_above *= kStandardGravity;
+  parameters.back().in_unit = 1e5;
+  parameters.back().unit = "mGal";
+}
+
+template <class Visit>
+void Layout::visit(CalibrationValues& v, Visit&& visit) const {
+  const auto three = [&](int first, Vec3<double>& value) {
+    for (int i = 0; first >= 0 && i < 3; ++i) visit(first + i, value(i));
+  };
+  const auto one = [&](int index, double& value) {
+    if (index >= 0) visit(index, value);
+  };
+  for (int i = 0; i < 9; ++i) visit(gyro_matrix + i, v.unit.gyro.M(i / 3, i % 3));
+  three(gyro_cubic, v.unit.gyro.cubic);
+  for (int i = 0; g_sensitivity >= 0 && i < 9; ++i) visit(g_sensitivity + i, v.unit.g_sensitivity(i / 3, i % 3));
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) one(accel_matrix[i][j], v.unit.accel.M(i, j));
+  }
+  three(accel_quadratic, v.unit.accel.quadratic);
+  for (std::size_t r = 0; r < gyro_bias.size(); ++r) {
+    three(gyro_bias[r], v.recording_bias[r].w);
+    three(accel_bias[r], v.recording_bias[r].f);
+  }
+  if (tilt >= 0) {
+    visit(tilt, v.rig.tilt_x);
+    visit(tilt + 1, v.rig.tilt_y);
+    visit(heading, v.rig.heading);
+    visit(nonorthogonality, v.rig.nonorthogonality);
+    for (int a = 0; a < 2; ++a) {
+      visit(eccentricity + 2 * a, v.rig.eccentricity[a].cosine);
+      visit(eccentricity + 2 * a + 1, v.rig.eccentricity[a].sine);
+    }
+  }
+  for (std::size_t m = 0; m < mount_error.size(); ++m) {
+    three(mount_error[m], v.mount_error[m]);
+    three(lever_arm[m], v.lever_arm[m]);
+  }
+  one(clock_offset, v.clock_offset);
+  one(gravity, v.gravity);
+}
+
+void Layout::write(const CalibrationValues& values, Eigen::VectorXd& x) const {
+  x.resize(size());
+  CalibrationValues copy = values;
+  visit(copy, [&](int i, double& value) { x(i) = value; });
+}
+
+void Layout::read(const Eigen::VectorXd& x, CalibrationValues& values) const {
+  visit(values, [&](int i, double& value) { value = x(i); });
+  values.unit.gyro.bias.setZero();
+  values.unit.accel.bias.setZero();
+  const auto count = static_cast<double>(gyro_bias.size());
+  for (std::size_t r = 0; r < gyro_bias.size(); ++r) {
+    values.unit.gyro.bias += values.recording_bias[r].w / count;
+    values.unit.accel.bias += values.recording_bias[r].f / count;
+  }
+}
+
+CalibrationValues Layout::sigmas(const Eigen::MatrixXd& covariance) const {
+  CalibrationValues sigma;
+  visit(sigma, [&](int i, double& value) { value = std::sqrt(covariance(i, i)); });
+  // the mean over the recordings: variance of a sum, with its covariances
+  const auto mean_sigma = [&](const std::vector<int>& first, int i) {
+    double variance = 0.0;
+    for (const int a : first) {
+      for (const int b : first) variance += covariance(a + i, b + i);
+    }
+    return std::sqrt(variance) / static_cast<double>(first.size());
+  };
+  for (int i = 0; i < 3; ++i) {
+    sigma.unit.gyro.bias(i) = mean_sigma(gyro_bias, i);
+    sigma.unit.accel.bias(i) = mean_sigma(accel_bias, i);
+  }
+  return sigma;
+}
+
+}  // namespace trunnion::calibration

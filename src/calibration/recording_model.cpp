@@ -1,0 +1,321 @@
+// SPDX-FileCopyrightText: 2026 the trunnion authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "recording_model.hpp"
+
+#include <ceres/jet.h>
+
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+
+namespace trunnion::calibration {
+namespace {
+
+constexpr double kWindowMargin = 0.25;  // s of encoder course that a window needs on either side: room for the clock offset
+constexpr double kRestRate = 2e-4;      // rad/s: a window slower than this is one node
+
+// What a window depends on through the rig: the places of the derivatives in a Jet and in a row.
+enum RigPlace : int { kTilt = 0, kHeading = 2, kNonorthogonality = 3, kEccentricity = 4, kOffset = 8, kLever = 9, kGravity = 12, kRigPlaces = 13 };  // of the rig
+constexpr int kMountPlace = kRigPlaces;
+constexpr int kSharedPlaces = kRigPlaces + 3;
+// ... and through the sensor of the row
+enum OwnPlace : int { kBias = 0, kMatrix = 1, kHigherOrder = 4, kForceRow = 5, kOwnPlaces = 8 };
+constexpr int kPlaces = kOwnPlaces + kSharedPlaces;
+constexpr int kRow = kPlaces + 1;  // and the residual, last
+
+using Jet = ceres::Jet<double, kRigPlaces>;
+using Row = Eigen::Matrix<double, kRow, 1>;
+using RowNormal = Eigen::Matrix<double, kRow, kRow>;
+using Shared = Eigen::Matrix<double, 3, kSharedPlaces>;
+
+template <class T>
+T variable(double value, int place) {
+  if constexpr (std::is_same_v<T, double>) {
+    (void)place;
+    return value;
+  } else {
+    return T(value, place);
+  }
+}
+
+double part(double value) { return value; }
+double part(const Jet& value) { return value.a; }
+
+}  // namespace
+
+/// Mean input of a window in the case, its squares and cubes, and their derivatives.
+struct RecordingModel::WindowInput {
+  Vec3<double> w, f, w3, f2;
+  Shared dw, df, dw3, df2;
+};
+
+RecordingModel::RecordingModel(const TableRecording& recording, std::size_t index, const Rig& rig, const Site& site, const Layout& layout)
+    : recording_(recording), index_(index), rig_(rig), site_(site), layout_(layout) {
+  const CompressedRecording& data = recording.data;
+  usable_.reserve(data.windows.size());
+  for (std::size_t k = 0; k < data.windows.size(); ++k) {
+    const double margin = data.windows[k].half_width + kWindowMargin;
+    if (data.course.covers(data.windows[k].t - margin, data.windows[k].t + margin)) usable_.push_back(k);
+  }
+  inflation_.assign(usable_.size(), {1, 1, 1, 1, 1, 1});
+  if (usable_.empty()) return;
+  // an end of a window is known from the readings of about one knot interval
+  const double sigma = data.course.reading_sigma() * std::sqrt(data.course.period() / data.course.knot_spacing());
+  const double width = 2.0 * window(0).half_width;
+  encoder_variance_ = 2.0 * sigma * sigma / (width * width);
+}
+
+double RecordingModel::evaluate(const CalibrationValues& values, Eigen::MatrixXd* normal) const {
+  const auto nothing = [](std::size_t, int, double, double) {};
+  return normal != nullptr ? run<Jet, true>(values, normal, nothing) : run<double, false>(values, nullptr, nothing);
+}
+
+void RecordingModel::residuals(const CalibrationValues& values, const Visit& visit) const { run<double, false>(values, nullptr, visit); }
+
+/// White measurement variance of a row, before robust inflation.
+double RecordingModel::variance(std::size_t k, int row, bool moving) const {
+  const double time = window(k).samples * recording_.data.figures.period;
+  const double density = row < 3 ? noise_.gyro.density : noise_.accel.density;
+  return density * density / time + (row < 3 && moving ? encoder_variance_ : 0.0);
+}
+
+void RecordingModel::rest_noise(std::vector<double>& gyro, std::vector<double>& accel) const {
+  for (std::size_t k = 1; k < usable_.size(); ++k) {
+    const ObservationWindow& a = window(k - 1);
+    const ObservationWindow& b = window(k);
+    if (b.t - a.t > 3.0 * b.half_width) continue;
+    const auto from = recording_.data.course.at(a.t - a.half_width);
+    const auto to = recording_.data.course.at(b.t + b.half_width);
+    if (std::abs(to[0].angle - from[0].angle) + std::abs(to[1].angle - from[1].angle) > 1e-4) continue;
+    const double time = std::sqrt(recording_.data.figures.period / (1.0 / a.samples + 1.0 / b.samples));
+    for (int i = 0; i < 3; ++i) {
+      gyro.push_back(std::abs(b.mean.w(i) - a.mean.w(i)) * time);
+      accel.push_back(std::abs(b.mean.f(i) - a.mean.f(i)) * time);
+    }
+  }
+}
+
+template <class T>
+AxisMotion<T> RecordingModel::motion(const CourseValue& reading) const {
+  if constexpr (std::is_same_v<T, double>) {
+    return {reading.angle, reading.rate, reading.acceleration};
+  } else {
+    // the encoder is read at t - offset
+    AxisMotion<T> m{T(reading.angle), T(reading.rate), T(reading.acceleration)};
+    m.angle.v(kOffset) = -reading.rate;
+    m.rate.v(kOffset) = -reading.acceleration;
+    m.acceleration.v(kOffset) = -reading.jerk;
+    return m;
+  }
+}
+
+template <class T, bool kWithRows, class VisitRow>
+double RecordingModel::run(const CalibrationValues& values, Eigen::MatrixXd* normal, VisitRow&& visit) const {
+  const auto mount = static_cast<std::size_t>(recording_.mount);
+  TwoAxisErrors<T> errors;
+  errors.tilt_x = variable<T>(values.rig.tilt_x, kTilt);
+  errors.tilt_y = variable<T>(values.rig.tilt_y, kTilt + 1);
+  errors.heading = variable<T>(values.rig.heading, kHeading);
+  errors.nonorthogonality = variable<T>(values.rig.nonorthogonality, kNonorthogonality);
+  for (int a = 0; a < 2; ++a) {
+    errors.eccentricity[a].cosine = variable<T>(values.rig.eccentricity[a].cosine, kEccentricity + 2 * a);
+    errors.eccentricity[a].sine = variable<T>(values.rig.eccentricity[a].sine, kEccentricity + 2 * a + 1);
+  }
+  const TwoAxisTable<T> table(rig_.geometry, errors, site_.latitude, variable<T>(values.gravity, kGravity));
+  Vec3<T> lever;
+  for (int i = 0; i < 3; ++i) lever(i) = variable<T>(values.lever_arm[mount](i), kLever + i);
+
+  // C_bp = Exp(-e) C_bp(nominal), and its derivatives to e
+  using MountJet = ceres::Jet<double, 3>;
+  Vec3<MountJet> minus_e;
+  for (int i = 0; i < 3; ++i) minus_e(i) = -MountJet(values.mount_error[mount](i), i);
+  const Mat3<MountJet> turned = rotation_exp<MountJet>(minus_e) * rig_.mount[mount].C_pb.transpose().cast<MountJet>();
+  Mat3<double> C_bp;
+  std::array<Mat3<double>, 3> dC_bp;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      C_bp(i, j) = turned(i, j).a;
+      for (std::size_t e = 0; e < 3; ++e) dC_bp[e](i, j) = turned(i, j).v(static_cast<Eigen::Index>(e));
+    }
+  }
+
+  std::array<RowNormal, 6> row_normal;
+  for (auto& one : row_normal) one.setZero();
+  using Whitened = std::conditional_t<kWithRows, Row, Eigen::Matrix<double, 1, 1>>;
+  std::vector<Whitening<Whitened>> whitening;
+  whitening.reserve(6);
+  for (int row = 0; row < 6; ++row) whitening.emplace_back(row < 3 ? noise_.gyro : noise_.accel, Whitened::Zero());
+
+  const InertialUnit<double>& unit = values.unit;
+  const Mat3<double> K_g = unit.gyro.matrix();
+  const Mat3<double> K_a = unit.accel.matrix();
+  const Vec3<double> bias_g = values.recording_bias[index_].w;
+  const Vec3<double> bias_a = values.recording_bias[index_].f;
+  double cost = 0.0;
+  WindowInput in;
+  for (std::size_t k = 0; k < usable_.size(); k += stride_) {
+    const ObservationWindow& window = this->window(k);
+    const bool moving = window_input<T, kWithRows>(table, lever, C_bp, dC_bp, window, values.clock_offset, in);
+    const Vec3<double> r_g = window.mean.w - (K_g * in.w + bias_g +
+                                              unit.gyro.cubic.cwiseProduct(in.w3) + unit.g_sensitivity * in.f);
+    const Vec3<double> r_a = window.mean.f - (K_a * in.f + bias_a + unit.accel.quadratic.cwiseProduct(in.f2));
+    Shared dr_g;
+    Shared dr_a;
+    if constexpr (kWithRows) {
+      dr_g.noalias() = -(K_g * in.dw + unit.g_sensitivity * in.df);
+      dr_g -= unit.gyro.cubic.asDiagonal() * in.dw3;
+      dr_a.noalias() = -(K_a * in.df);
+      dr_a -= unit.accel.quadratic.asDiagonal() * in.df2;
+    }
+    for (int row = 0; row < 6; ++row) {
+      const int i = row % 3;
+      const bool gyro = row < 3;
+      auto& filter = whitening[static_cast<std::size_t>(row)];
+      const double inflation = static_cast<double>(inflation_[k][static_cast<std::size_t>(row)]);
+      filter.predict(window.t, variance(k, row, moving) * inflation);
+      const double residual = gyro ? r_g(i) : r_a(i);
+      double innovation = 0.0;
+      if constexpr (kWithRows) {
+        Row v;
+        v(kBias) = -1.0;
+        v.segment<3>(kMatrix) = gyro ? -in.w : -in.f;
+        v(kHigherOrder) = gyro ? -in.w3(i) : -in.f2(i);
+        if (gyro) {
+          v.segment<3>(kForceRow) = -in.f;
+        } else {
+          v.segment<3>(kForceRow).setZero();
+        }
+        v.segment<kSharedPlaces>(kOwnPlaces) = gyro ? dr_g.row(i).transpose() : dr_a.row(i).transpose();
+        v(kPlaces) = residual;
+        const Row e = filter.innovate(v);
+        row_normal[static_cast<std::size_t>(row)].template selfadjointView<Eigen::Lower>().rankUpdate(e);
+        innovation = e(kPlaces);
+      } else {
+        innovation = filter.innovate(Eigen::Matrix<double, 1, 1>(residual))(0);
+      }
+      cost += innovation * innovation;
+      visit(k, row, residual, innovation);
+    }
+  }
+  if constexpr (kWithRows) {
+    for (int row = 0; row < 6; ++row) scatter(row, row_normal[static_cast<std::size_t>(row)], *normal);
+  }
+  return cost;
+}
+
+/// Mean input over the window's samples. @return whether the rig moves in it
+template <class T, bool kWithRows>
+bool RecordingModel::window_input(const TwoAxisTable<T>& table, const Vec3<T>& lever, const Mat3<double>& C_bp, const std::array<Mat3<double>, 3>& dC_bp,
+                  const ObservationWindow& window, double offset, WindowInput& in) const {
+  std::array<std::array<CourseValue, 2>, kWindowNodes> reading;
+  bool moving = false;
+  for (std::size_t n = 0; n < kWindowNodes; ++n) {
+    reading[n] = recording_.data.course.at(window.t - offset + window.half_width * kNodeAbscissa[n]);
+    moving = moving || std::abs(reading[n][0].rate) + std::abs(reading[n][1].rate) > kRestRate;
+  }
+  std::size_t nodes = kWindowNodes;
+  std::array<double, kWindowNodes> weight = window.weight;
+  if (!moving) {
+    // linear over the window: the mean of the readings stands for them all
+    std::array<CourseValue, 2> mean;
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      for (std::size_t n = 0; n < kWindowNodes; ++n) {
+        mean[axis].angle += weight[n] * reading[n][axis].angle;
+        mean[axis].rate += weight[n] * reading[n][axis].rate;
+        mean[axis].acceleration += weight[n] * reading[n][axis].acceleration;
+        mean[axis].jerk += weight[n] * reading[n][axis].jerk;
+      }
+    }
+    reading[0] = mean;
+    weight[0] = 1.0;
+    nodes = 1;
+  }
+  in.w.setZero();
+  in.f.setZero();
+  in.w3.setZero();
+  in.f2.setZero();
+  if constexpr (kWithRows) {
+    in.dw.setZero();
+    in.df.setZero();
+    in.dw3.setZero();
+    in.df2.setZero();
+  }
+  for (std::size_t n = 0; n < nodes; ++n) {
+    const InertialSample<T> input = table.input(motion<T>(reading[n][0]), motion<T>(reading[n][1]), lever);
+    Vec3<double> w_p;
+    Vec3<double> f_p;
+    for (int i = 0; i < 3; ++i) {
+      w_p(i) = part(input.w(i));
+      f_p(i) = part(input.f(i));
+    }
+    const Vec3<double> w = C_bp * w_p;
+    const Vec3<double> f = C_bp * f_p;
+    in.w += weight[n] * w;
+    in.f += weight[n] * f;
+    in.w3 += weight[n] * w.cwiseProduct(w).cwiseProduct(w);
+    in.f2 += weight[n] * f.cwiseProduct(f);
+    if constexpr (kWithRows) {
+      Eigen::Matrix<double, 3, kRigPlaces> dw_p;
+      Eigen::Matrix<double, 3, kRigPlaces> df_p;
+      for (int i = 0; i < 3; ++i) {
+        dw_p.row(i) = input.w(i).v.transpose();
+        df_p.row(i) = input.f(i).v.transpose();
+      }
+      Shared dw;
+      Shared df;
+      dw.leftCols<kRigPlaces>().noalias() = C_bp * dw_p;
+      df.leftCols<kRigPlaces>().noalias() = C_bp * df_p;
+      for (int e = 0; e < 3; ++e) {
+        dw.col(kMountPlace + e).noalias() = dC_bp[static_cast<std::size_t>(e)] * w_p;
+        df.col(kMountPlace + e).noalias() = dC_bp[static_cast<std::size_t>(e)] * f_p;
+      }
+      in.dw += weight[n] * dw;
+      in.df += weight[n] * df;
+      in.dw3 += (3.0 * weight[n] * w.cwiseProduct(w)).asDiagonal() * dw;
+      in.df2 += (2.0 * weight[n] * f).asDiagonal() * df;
+    }
+  }
+  return moving;
+}
+
+/// Adds the normal matrix of one sensor to that of all unknowns.
+template <class RowNormal>
+void RecordingModel::scatter(int row, const RowNormal& normal, Eigen::MatrixXd& into) const {
+  std::array<int, kRow> place;
+  place.fill(-1);
+  const int i = row % 3;
+  const bool gyro = row < 3;
+  const std::size_t r = index_;
+  const auto m = static_cast<std::size_t>(recording_.mount);
+  place[kBias] = (gyro ? layout_.gyro_bias[r] : layout_.accel_bias[r]) + i;
+  for (int j = 0; j < 3; ++j) {
+    place[static_cast<std::size_t>(kMatrix + j)] = gyro ? layout_.gyro_matrix + 3 * i + j : layout_.accel_matrix[i][j];
+    if (gyro && layout_.g_sensitivity >= 0) place[static_cast<std::size_t>(kForceRow + j)] = layout_.g_sensitivity + 3 * i + j;
+  }
+  const int higher = gyro ? layout_.gyro_cubic : layout_.accel_quadratic;
+  if (higher >= 0) place[kHigherOrder] = higher + i;
+  const auto shared = [&](int at, int first, int count) {
+    for (int j = 0; first >= 0 && j < count; ++j) place[static_cast<std::size_t>(kOwnPlaces + at + j)] = first + j;
+  };
+  shared(kTilt, layout_.tilt, 2);
+  shared(kHeading, layout_.heading, 1);
+  shared(kNonorthogonality, layout_.nonorthogonality, 1);
+  shared(kEccentricity, layout_.eccentricity, 4);
+  shared(kOffset, layout_.clock_offset, 1);
+  shared(kLever, layout_.lever_arm[m], 3);
+  shared(kGravity, layout_.gravity, 1);
+  shared(kMountPlace, layout_.mount_error[m], 3);
+  place[kPlaces] = layout_.size();
+  for (int a = 0; a < kRow; ++a) {
+    for (int b = 0; b <= a; ++b) {
+      const int pa = place[static_cast<std::size_t>(a)];
+      const int pb = place[static_cast<std::size_t>(b)];
+      if (pa < 0 || pb < 0) continue;
+      into(pa, pb) += normal(a, b);
+      if (pa != pb) into(pb, pa) += normal(a, b);
+    }
+  }
+}
+
+}  // namespace trunnion::calibration

@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: 2026 the trunnion authors
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// One recording against the model: residuals of its windows, whitened, and their normal equations.
+///
+/// A row (one sensor of one window) depends on 24 unknowns only: eight of its own sensor, thirteen of the rig and three
+/// of the mount. Rig derivatives come from the rung-1 table in automatic-differentiation numbers; the rest is linear.
+
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+#include "trunnion/calibration/parameters.hpp"
+#include "trunnion/calibration/twelve_position_solve.hpp"
+#include "whitening.hpp"
+
+namespace trunnion::calibration {
+
+class RecordingModel {
+ public:
+  /// @param index of the recording in the layout. The references must outlive the model.
+  RecordingModel(const TableRecording& recording, std::size_t index, const Rig& rig, const Site& site, const Layout& layout);
+
+  /// Windows that have samples and encoders on all sides.
+  [[nodiscard]] std::size_t windows() const { return usable_.size(); }
+  [[nodiscard]] const ObservationWindow& window(std::size_t k) const { return recording_.data.windows[usable_[k]]; }
+
+  void set_noise(const UnitNoise& noise) { noise_ = noise; }
+  /// Looks at every n-th window only.
+  void set_stride(std::size_t stride) { stride_ = stride; }
+  /// Robust inflation of the measurement variance: per window, rows 0-2 gyro, 3-5 accelerometer; 1 is full weight.
+  [[nodiscard]] std::vector<std::array<float, 6>>& inflation() { return inflation_; }
+
+  /// Sum of the squared innovations. With @p normal also adds J^T J, J^T r and r^T r over (unknowns, residual).
+  double evaluate(const CalibrationValues& values, Eigen::MatrixXd* normal) const;
+
+  using Visit = std::function<void(std::size_t window, int row, double residual, double innovation)>;
+  /// Calls @p visit for every row.
+  void residuals(const CalibrationValues& values, const Visit& visit) const;
+
+  /// Adds |step| between neighbouring windows at rest, scaled to a noise density.
+  void rest_noise(std::vector<double>& gyro, std::vector<double>& accel) const;
+
+ private:
+  struct WindowInput;
+
+  [[nodiscard]] double variance(std::size_t k, int row, bool moving) const;
+  template <class T>
+  [[nodiscard]] AxisMotion<T> motion(const CourseValue& reading) const;
+  template <class T, bool kWithRows, class VisitRow>
+  double run(const CalibrationValues& values, Eigen::MatrixXd* normal, VisitRow&& visit) const;
+  template <class T, bool kWithRows>
+  bool window_input(const TwoAxisTable<T>& table, const Vec3<T>& lever, const Mat3<double>& C_bp, const std::array<Mat3<double>, 3>& dC_bp,
+                    const ObservationWindow& window, double offset, WindowInput& in) const;
+  template <class RowNormal>
+  void scatter(int row, const RowNormal& normal, Eigen::MatrixXd& into) const;
+
+  const TableRecording& recording_;
+  std::size_t index_;
+  const Rig& rig_;
+  const Site& site_;
+  const Layout& layout_;
+  std::vector<std::size_t> usable_;
+  std::vector<std::array<float, 6>> inflation_;
+  UnitNoise noise_;
+  double encoder_variance_ = 0.0;
+  std::size_t stride_ = 1;
+};
+
+}  // namespace trunnion::calibration

@@ -1,0 +1,177 @@
+// SPDX-FileCopyrightText: 2026 the trunnion authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "trunnion/calibration/rests_and_turns.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "trunnion/core/error.hpp"
+
+namespace trunnion::calibration {
+namespace {
+
+constexpr double kBlock = 0.25;          // s
+constexpr double kShortestRest = 1.0;    // s, before the ends are cut off
+constexpr double kQuietQuantile = 0.15;  // of the blocks: the unit lies still for at least this share of the recording
+constexpr double kScatterFactor = 3.0;
+constexpr double kRestRate = 0.005;      // rad/s: what g-sensitivity may change between rests
+constexpr double kTurnStep = 0.005;      // s
+constexpr double kGap = 5.0;             // periods
+
+struct Block {
+  std::size_t first, last;  // samples [first, last)
+  Vec3<double> w;
+  double scatter_w, scatter_f;
+  bool still = false;
+};
+
+double quantile(std::vector<double> v, double q) {
+  const auto at = v.begin() + static_cast<std::ptrdiff_t>(q * static_cast<double>(v.size() - 1));
+  std::nth_element(v.begin(), at, v.end());
+  return *at;
+}
+
+}  // namespace
+
+void RestsAndTurns::imu(std::int64_t utime, const InertialSample<double>& sample) {
+  switch (clock_.judge(utime)) {
+    case ChannelClock::Verdict::kDuplicate:
+      ++result_.figures.duplicates;
+      return;
+    case ChannelClock::Verdict::kStray:
+      ++result_.figures.stray;
+      return;
+    case ChannelClock::Verdict::kReset:
+      throw Error(ExitCode::kInput, result_.name + ": the clock of the IMU channel was reset: its stamps went to utime " + std::to_string(utime) +
+                                        " and stayed there; split the recording at that point");
+    case ChannelClock::Verdict::kNext:
+      break;
+  }
+  if (samples_.empty()) origin_ = utime;
+  samples_.push_back({1e-6 * static_cast<double>(utime - origin_), sample});
+}
+
+HandRecording RestsAndTurns::finish(double gyro_range, double accel_range) {
+  RecordingFigures& figures = result_.figures;
+  const std::size_t n = samples_.size();
+  if (n < 100) throw Error(ExitCode::kInput, result_.name + ": only " + std::to_string(n) + " usable IMU samples");
+  std::vector<double> step(n - 1);
+  for (std::size_t i = 1; i < n; ++i) step[i - 1] = samples_[i].t - samples_[i - 1].t;
+  figures.period = quantile(step, 0.5);
+  figures.samples = static_cast<long long>(n);
+  figures.duration = samples_.back().t;
+  for (const Sample& s : samples_) {
+    const bool saturated = (gyro_range > 0.0 && s.value.w.cwiseAbs().maxCoeff() >= gyro_range) ||
+                           (accel_range > 0.0 && s.value.f.cwiseAbs().maxCoeff() >= accel_range);
+    if (saturated && ++figures.saturated == 1) figures.first_saturated = s.t;
+  }
+  if (static_cast<double>(figures.saturated) > 1e-3 * static_cast<double>(n)) {
+    throw Error(ExitCode::kInput, result_.name + ": saturated: " + std::to_string(figures.saturated) + " of " + std::to_string(n) +
+                                      " samples at or past the sheet's range, first at " + std::to_string(figures.first_saturated) +
+                                      " s; turn slower, or correct the range in the sheet");
+  }
+
+  std::vector<Block> blocks;
+  const auto length = static_cast<std::size_t>(std::max(4.0, std::round(kBlock / figures.period)));
+  for (std::size_t first = 0; first + length <= n; first += length) {
+    Block block{first, first + length, Vec3<double>::Zero(), 0.0, 0.0};
+    Vec3<double> w = Vec3<double>::Zero();
+    Vec3<double> f = Vec3<double>::Zero();
+    Vec3<double> w2 = Vec3<double>::Zero();
+    Vec3<double> f2 = Vec3<double>::Zero();
+    const InertialSample<double>& origin = samples_[first].value;  // differences against it keep their digits
+    for (std::size_t i = first; i < block.last; ++i) {
+      const Vec3<double> dw = samples_[i].value.w - origin.w;
+      const Vec3<double> df = samples_[i].value.f - origin.f;
+      w += dw;
+      f += df;
+      w2 += dw.cwiseAbs2();
+      f2 += df.cwiseAbs2();
+    }
+    const auto count = static_cast<double>(length);
+    block.w = origin.w + w / count;
+    block.scatter_w = std::sqrt(std::max(0.0, (w2 / count - (w / count).cwiseAbs2()).sum() / 3.0));
+    block.scatter_f = std::sqrt(std::max(0.0, (f2 / count - (f / count).cwiseAbs2()).sum() / 3.0));
+    blocks.push_back(block);
+  }
+  if (blocks.empty()) throw Error(ExitCode::kInput, result_.name + ": too short to hold a rest");
+  std::vector<double> scatter_w;
+  std::vector<double> scatter_f;
+  for (const Block& b : blocks) {
+    scatter_w.push_back(b.scatter_w);
+    scatter_f.push_back(b.scatter_f);
+  }
+  const double quiet_w = quantile(scatter_w, kQuietQuantile);
+  const double quiet_f = quantile(scatter_f, kQuietQuantile);
+  std::vector<double> rest_rate[3];
+  for (Block& b : blocks) {
+    b.still = b.scatter_w <= kScatterFactor * quiet_w && b.scatter_f <= kScatterFactor * quiet_f;
+    for (int i = 0; b.still && i < 3; ++i) rest_rate[i].push_back(b.w(i));
+  }
+  Vec3<double> usual;
+  for (int i = 0; i < 3; ++i) usual(i) = quantile(rest_rate[i], 0.5);
+  const double slack = kRestRate + 5.0 * quiet_w / std::sqrt(static_cast<double>(length));
+  for (Block& b : blocks) {
+    b.still = b.still && (b.w - usual).cwiseAbs().maxCoeff() < slack && samples_[b.last - 1].t - samples_[b.first].t < 1.5 * kBlock + kGap * figures.period;
+  }
+
+  std::vector<std::size_t> rest_first;
+  std::vector<std::size_t> rest_last;
+  std::vector<double> rest_scatter_w;
+  std::vector<double> rest_scatter_f;
+  for (std::size_t b = 0; b < blocks.size();) {
+    std::size_t e = b;
+    while (e < blocks.size() && blocks[e].still && (e == b || samples_[blocks[e].first].t - samples_[blocks[e].first - 1].t < kGap * figures.period)) ++e;
+    if (e > b + 2 && static_cast<double>(e - b) * kBlock >= kShortestRest) {
+      Rest rest;
+      const std::size_t first = blocks[b + 1].first;
+      const std::size_t last = blocks[e - 2].last;
+      rest.begin = samples_[first].t - figures.period;
+      rest.end = samples_[last - 1].t;
+      rest.samples = static_cast<int>(last - first);
+      for (std::size_t i = first; i < last; ++i) {
+        rest.mean.w += samples_[i].value.w / rest.samples;
+        rest.mean.f += samples_[i].value.f / rest.samples;
+      }
+      for (std::size_t k = b + 1; k + 1 < e; ++k) {
+        rest_scatter_w.push_back(blocks[k].scatter_w);
+        rest_scatter_f.push_back(blocks[k].scatter_f);
+      }
+      result_.rests.push_back(rest);
+      rest_first.push_back(first);
+      rest_last.push_back(last);
+    }
+    b = std::max(e, b + 1);
+  }
+  if (!rest_scatter_w.empty()) {
+    const double bessel = std::sqrt(static_cast<double>(length) / static_cast<double>(length - 1) * figures.period);
+    result_.noise.gyro.density = quantile(rest_scatter_w, 0.5) * bessel;
+    result_.noise.accel.density = quantile(rest_scatter_f, 0.5) * bessel;
+  }
+
+  for (std::size_t r = 0; r + 1 < result_.rests.size(); ++r) {
+    Turn turn;
+    turn.from = r;
+    bool broken = false;
+    TurnStep open;
+    for (std::size_t i = rest_last[r]; i < rest_first[r + 1]; ++i) {
+      const double dt = samples_[i].t - samples_[i - 1].t;
+      broken = broken || dt > kGap * figures.period;
+      open.dt += dt;
+      open.mean.w += dt * samples_[i].value.w;
+      open.mean.f += dt * samples_[i].value.f;
+      if (open.dt + 0.5 * figures.period >= kTurnStep || i + 1 == rest_first[r + 1]) {
+        open.mean.w /= open.dt;
+        open.mean.f /= open.dt;
+        turn.steps.push_back(open);
+        open = TurnStep{};
+      }
+    }
+    if (!broken && !turn.steps.empty()) result_.turns.push_back(std::move(turn));
+  }
+  samples_ = {};
+  return std::move(result_);
+}
+
+}  // namespace trunnion::calibration

@@ -1,0 +1,372 @@
+// SPDX-FileCopyrightText: 2026 the trunnion authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "trunnion/calibration/twelve_position_solve.hpp"
+
+#include <ceres/ceres.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <thread>
+
+#include "trunnion/calibration/noise_estimate.hpp"
+#include "trunnion/core/error.hpp"
+#include "trunnion/core/units.hpp"
+#include "recording_model.hpp"
+
+namespace trunnion::calibration {
+namespace {
+
+constexpr double kLargestClockOffset = 0.2;   // s
+constexpr double kHuber = 4.0;                // sigmas
+constexpr int kRobustRounds = 4;
+constexpr int kCoarseStride = 16;             // windows
+constexpr double kNoiseStep = 1.0;            // s, of the residual series that the wander is estimated from
+
+/// One recording as one block of the Ceres problem, in square-root information form: n + 1 residuals stand for all its
+/// windows, with the same cost, gradient and J^T J, at a thousandth of the rows.
+class RecordingCost final : public ceres::CostFunction {
+ public:
+  RecordingCost(const RecordingModel& model, const Layout& layout, const CalibrationValues& fixed)
+      : model_(model), layout_(layout), fixed_(fixed) {
+    mutable_parameter_block_sizes()->push_back(layout.size());
+    set_num_residuals(layout.size() + 1);
+  }
+
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
+    const int n = layout_.size();
+    Eigen::VectorXd scale(n);
+    for (int i = 0; i < n; ++i) scale(i) = layout_.parameters[static_cast<std::size_t>(i)].refuse_above;
+    CalibrationValues values = fixed_;
+    layout_.read(Eigen::Map<const Eigen::VectorXd>(parameters[0], n).cwiseProduct(scale), values);
+    Eigen::Map<Eigen::VectorXd> r(residuals, n + 1);
+    if (jacobians == nullptr || jacobians[0] == nullptr) {
+      r.setZero();
+      r(0) = std::sqrt(model_.evaluate(values, nullptr));
+      return std::isfinite(r(0));
+    }
+    Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(n + 1, n + 1);
+    model_.evaluate(values, &normal);
+    if (!normal.allFinite()) return false;
+    Eigen::VectorXd scale_1(n + 1);
+    scale_1 << scale, 1.0;
+    normal = scale_1.asDiagonal() * normal * scale_1.asDiagonal();
+    const Eigen::LDLT<Eigen::MatrixXd> factor(normal);
+    const Eigen::MatrixXd permutation = factor.transpositionsP() * Eigen::MatrixXd::Identity(n + 1, n + 1);
+    Eigen::MatrixXd root = factor.matrixU();
+    root = factor.vectorD().cwiseMax(0.0).cwiseSqrt().asDiagonal() * root * permutation;
+    Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> J(jacobians[0], n + 1, n);
+    J = root.leftCols(n);
+    r = root.col(n);
+    return true;
+  }
+
+ private:
+  const RecordingModel& model_;
+  const Layout& layout_;
+  const CalibrationValues& fixed_;
+};
+
+/// Prior knowledge of one unknown: (x - mean) / sigma.
+struct Prior {
+  int index;
+  double mean;
+  double sigma;
+};
+
+class PriorCost final : public ceres::CostFunction {
+ public:
+  PriorCost(const Layout& layout, const Prior& prior)
+      : size_(layout.size()), prior_(prior), scale_(layout.parameters[static_cast<std::size_t>(prior.index)].refuse_above) {
+    mutable_parameter_block_sizes()->push_back(size_);
+    set_num_residuals(1);
+  }
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
+    residuals[0] = (parameters[0][prior_.index] * scale_ - prior_.mean) / prior_.sigma;
+    if (jacobians != nullptr && jacobians[0] != nullptr) {
+      std::fill_n(jacobians[0], size_, 0.0);
+      jacobians[0][prior_.index] = scale_ / prior_.sigma;
+    }
+    return true;
+  }
+
+ private:
+  int size_;
+  Prior prior_;
+  double scale_;
+};
+
+class TableProblem {
+ public:
+  TableProblem(const std::vector<TableRecording>& recordings, const Rig& rig, const Site& site, const TableSolveOptions& options)
+      : recordings_(recordings), rig_(rig), site_(site), options_(options), layout_(request()) {
+    start_.gravity = site.gravity;
+    start_.clock_offset = options.clock_offset;
+    for (std::size_t m = 0; m < kMaxMounts; ++m) start_.lever_arm[m] = rig.mount[m].lever_p;
+    for (std::size_t r = 0; r < recordings.size(); ++r) {
+      models_.push_back(std::make_unique<RecordingModel>(recordings[r], r, rig, site, layout_));
+      if (models_.back()->windows() == 0) {
+        throw Error(ExitCode::kInput, recordings[r].data.name + ": the encoders and the IMU do not overlap in time (IMU " + span(recordings[r]) + ")");
+      }
+    }
+    prior_ = {layout_.gravity, site.gravity, site.gravity_sigma};
+  }
+
+  Solution solve() {
+    UnitNoise noise = options_.noise;
+    if (options_.noise_from_data) noise = rest_noise();
+    set_noise(noise);
+    say("starting values");
+    find_start();
+    say("solving");
+    int iterations = minimise(start_);
+    if (options_.noise_from_data) {
+      for (int round = 0; round < 2; ++round) {
+        say("noise from the residuals");
+        reweigh();
+        noise = residual_noise(noise);
+        set_noise(noise);
+        iterations += minimise(start_);
+      }
+    }
+    for (int round = 0; round < kRobustRounds && reweigh(); ++round) {
+      say("solving without outliers");
+      iterations += minimise(start_);
+    }
+    say("covariance");
+    return conclude(noise, iterations);
+  }
+
+ private:
+  LayoutRequest request() const {
+    LayoutRequest r;
+    r.terms = options_.terms;
+    r.refuse_above = options_.refuse_above;
+    r.recordings = static_cast<int>(recordings_.size());
+    r.bias_per_recording = options_.bias_per_recording;
+    r.clock_offset = options_.estimate_clock_offset;
+    r.largest_rate = 1e-3;
+    r.mounts = options_.mount_names;
+    for (int m = static_cast<int>(r.mounts.size()); m < rig_.mounts; ++m) r.mounts.push_back("mount_" + std::to_string(m + 1));
+    r.mount_used.assign(r.mounts.size(), false);
+    for (const TableRecording& recording : recordings_) {
+      r.mount_used[static_cast<std::size_t>(recording.mount)] = true;
+      for (const ObservationWindow& window : recording.data.windows) r.largest_rate = std::max(r.largest_rate, window.mean.w.cwiseAbs().maxCoeff());
+    }
+    return r;
+  }
+
+  static std::string span(const TableRecording& recording) {
+    const auto& windows = recording.data.windows;
+    if (windows.empty()) return "has no samples";
+    char text[128];
+    std::snprintf(text, sizeof text, "%.3f s to %.3f s, encoders %.3f s to %.3f s", windows.front().t, windows.back().t, recording.data.course.begin(),
+                  recording.data.course.end());
+    return text;
+  }
+
+  void say(const char* stage) const {
+    if (options_.progress) options_.progress(stage);
+  }
+
+  void set_noise(const UnitNoise& noise) {
+    for (auto& model : models_) model->set_noise(noise);
+  }
+
+  void set_stride(std::size_t stride) {
+    for (auto& model : models_) model->set_stride(stride);
+  }
+
+  UnitNoise rest_noise() const {
+    std::vector<double> gyro;
+    std::vector<double> accel;
+    for (const auto& model : models_) model->rest_noise(gyro, accel);
+    if (gyro.size() < 300) {
+      throw Error(ExitCode::kInput, "no sheet, and less than ten seconds at rest to tell the noise from: add a sheet, or rests to the run");
+    }
+    const auto density = [](std::vector<double>& v) {
+      const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
+      std::nth_element(v.begin(), middle, v.end());
+      return *middle / 0.6744897501960817;
+    };
+    UnitNoise noise;
+    noise.gyro.density = density(gyro);
+    noise.accel.density = density(accel);
+    if (!(noise.gyro.density > 0.0) || !(noise.accel.density > 0.0)) {
+      throw Error(ExitCode::kInput, "the recordings are free of noise at rest: state the noise in a sheet");
+    }
+    return noise;
+  }
+
+  UnitNoise residual_noise(UnitNoise noise) const {
+    std::vector<ResidualSeries> gyro;
+    std::vector<ResidualSeries> accel;
+    for (const auto& model : models_) {
+      std::array<ResidualSeries, 6> series;
+      std::array<double, 6> sum{};
+      std::array<int, 6> count{};
+      std::array<double, 6> until{};
+      until.fill(model->window(0).t + kNoiseStep);
+      model->residuals(start_, [&](std::size_t k, int row, double residual, double) {
+        const auto c = static_cast<std::size_t>(row);
+        const double t = model->window(k).t;
+        if (t >= until[c]) {
+          if (count[c] > 0) series[c].value.push_back(sum[c] / count[c]);
+          sum[c] = 0.0;
+          count[c] = 0;
+          until[c] += kNoiseStep * std::max(1.0, std::floor((t - until[c]) / kNoiseStep) + 1.0);
+        }
+        if (model->inflation()[k][c] == 1.0F) {
+          sum[c] += residual;
+          ++count[c];
+        }
+      });
+      for (std::size_t c = 0; c < 6; ++c) {
+        series[c].step = kNoiseStep;
+        (c < 3 ? gyro : accel).push_back(std::move(series[c]));
+      }
+    }
+    noise.gyro = estimate_noise(gyro, noise.gyro.density);
+    noise.accel = estimate_noise(accel, noise.accel.density);
+    return noise;
+  }
+
+  /// A heading that may be anything: the best of four, on every sixteenth window.
+  void find_start() {
+    set_stride(kCoarseStride);
+    CalibrationValues best = start_;
+    double lowest = std::numeric_limits<double>::infinity();
+    for (int quarter = 0; quarter < 4; ++quarter) {
+      CalibrationValues candidate = start_;
+      candidate.rig.heading = 0.5 * kPi * quarter;
+      double cost = 0.0;
+      minimise(candidate, &cost, 4);
+      if (cost < lowest) {
+        lowest = cost;
+        best = candidate;
+      }
+    }
+    set_stride(1);
+    start_ = best;
+    start_.rig.heading = std::remainder(start_.rig.heading, 2.0 * kPi);
+  }
+
+  int minimise(CalibrationValues& values, double* cost = nullptr, int most_iterations = 30) {
+    Eigen::VectorXd x;
+    layout_.write(values, x);
+    const int n = layout_.size();
+    for (int i = 0; i < n; ++i) x(i) /= scale(i);
+    ceres::Problem problem;
+    problem.AddParameterBlock(x.data(), n);
+    for (const auto& model : models_) problem.AddResidualBlock(new RecordingCost(*model, layout_, values), nullptr, x.data());
+    problem.AddResidualBlock(new PriorCost(layout_, prior_), nullptr, x.data());
+    ceres::Solver::Options solver;
+    solver.linear_solver_type = ceres::DENSE_QR;
+    solver.num_threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    solver.max_num_iterations = most_iterations;
+    solver.initial_trust_region_radius = 1e8;
+    solver.function_tolerance = 1e-10;
+    solver.parameter_tolerance = 1e-11;
+    solver.gradient_tolerance = 1e-14;
+    solver.logging_type = ceres::SILENT;
+    ceres::Solver::Summary summary;
+    ceres::Solve(solver, &problem, &summary);
+    const bool failed = summary.termination_type == ceres::FAILURE || (cost == nullptr && summary.termination_type == ceres::NO_CONVERGENCE);
+    for (int i = 0; i < n; ++i) x(i) *= scale(i);
+    layout_.read(x, values);
+    if (failed && cost == nullptr) throw Error(ExitCode::kNumerics, "the solve did not converge: " + summary.message);
+    if (cost != nullptr) *cost = failed ? std::numeric_limits<double>::infinity() : summary.final_cost;
+    if (cost == nullptr && std::abs(values.clock_offset) > kLargestClockOffset) {
+      throw Error(ExitCode::kInput, "the IMU's clock is more than 0.2 s off the encoder's: state clock.imu_to_encoder_offset in the run file");
+    }
+    return static_cast<int>(summary.iterations.size());
+  }
+
+  /// Huber weights from the innovations. @return whether any weight changed by more than a tenth
+  bool reweigh() {
+    bool changed = false;
+    for (auto& model : models_) {
+      std::vector<std::array<float, 6>> next = model->inflation();
+      model->residuals(start_, [&](std::size_t k, int row, double, double innovation) {
+        float& inflation = next[k][static_cast<std::size_t>(row)];
+        // the innovation was divided by an inflated sigma: undo that
+        const double size = std::abs(innovation) * std::sqrt(static_cast<double>(inflation));
+        inflation = size > kHuber ? static_cast<float>(size / kHuber * (size / kHuber)) : 1.0F;
+      });
+      for (std::size_t k = 0; k < next.size(); ++k) {
+        for (std::size_t c = 0; c < 6; ++c) {
+          changed = changed || std::abs(next[k][c] - model->inflation()[k][c]) > 0.1F * next[k][c];
+        }
+      }
+      model->inflation() = std::move(next);
+    }
+    return changed;
+  }
+
+  [[nodiscard]] double scale(int i) const { return layout_.parameters[static_cast<std::size_t>(i)].refuse_above; }
+
+  Solution conclude(const UnitNoise& noise, int iterations) {
+    const int n = layout_.size();
+    Eigen::MatrixXd information = Eigen::MatrixXd::Zero(n, n);
+    double cost = 0.0;
+    for (const auto& model : models_) {
+      Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(n + 1, n + 1);
+      model->evaluate(start_, &normal);
+      information += normal.topLeftCorner(n, n);
+      cost += normal(n, n);
+    }
+    information(prior_.index, prior_.index) += 1.0 / (prior_.sigma * prior_.sigma);
+    // a heading may be anything: its flat prior is knowledge enough, it is nobody's calibration
+    information(layout_.heading, layout_.heading) += 1.0 / (scale(layout_.heading) * scale(layout_.heading));
+
+    Solution solution;
+    solution.parameters = layout_.parameters;
+    layout_.write(start_, solution.x);
+    solution.observability = judge(information, layout_.parameters);
+    solution.noise = noise;
+    solution.gauge = {"pitch_encoder_zero", request().mounts.front() + "_datum"};
+    CalibrationRecord& record = solution.record;
+    record.value = start_;
+    record.value.rig.heading = std::remainder(record.value.rig.heading, 2.0 * kPi);
+    record.sigma = layout_.sigmas(solution.observability.covariance);
+    record.has_rig = true;
+    record.mounts = rig_.mounts;
+    record.recordings = static_cast<int>(recordings_.size());
+    for (std::size_t r = 0; r < recordings_.size(); ++r) {
+      const RecordingFigures& figures = recordings_[r].data.figures;
+      record.recording_mount[r] = recordings_[r].mount;
+      record.fit.samples += figures.samples;
+      record.fit.windows += static_cast<long long>(models_[r]->windows());
+      record.fit.outliers += figures.outliers;
+      for (const auto& inflation : models_[r]->inflation()) {
+        record.fit.outliers += std::any_of(inflation.begin(), inflation.end(), [](float row) { return row > 1.0F; }) ? 1 : 0;
+      }
+    }
+    const double rows = 6.0 * static_cast<double>(record.fit.windows);
+    record.fit.reduced_chi_square = cost / std::max(1.0, rows - n);
+    record.fit.iterations = iterations;
+    return solution;
+  }
+
+  const std::vector<TableRecording>& recordings_;
+  const Rig& rig_;
+  const Site& site_;
+  const TableSolveOptions& options_;
+  Layout layout_;
+  CalibrationValues start_;  // and, after each minimise(), the current estimate
+  std::vector<std::unique_ptr<RecordingModel>> models_;
+  Prior prior_{};
+};
+
+}  // namespace
+
+Solution solve_table(const std::vector<TableRecording>& recordings, const Rig& rig, const Site& site, const TableSolveOptions& options) {
+  if (recordings.empty()) throw Error(ExitCode::kInput, "no recordings to solve");
+  if (recordings.size() > kMaxRecordings) throw Error(ExitCode::kInput, "more than " + std::to_string(kMaxRecordings) + " recordings in one run");
+  TableProblem problem(recordings, rig, site, options);
+  return problem.solve();
+}
+
+}  // namespace trunnion::calibration

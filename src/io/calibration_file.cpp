@@ -1,0 +1,232 @@
+// SPDX-FileCopyrightText: 2026 the trunnion authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "trunnion/io/calibration_file.hpp"
+
+#include <array>
+#include <charconv>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "strict_yaml.hpp"
+
+namespace trunnion::io {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// The content as a tree, from which both forms are printed. @p null_zero: a sigma of zero is null, "not estimated".
+Json number(double value, bool null_zero) { return null_zero && value == 0.0 ? Json(nullptr) : Json(value); }
+
+Json list(const Vec3<double>& v, bool null_zero = false) {
+  return Json::array({number(v.x(), null_zero), number(v.y(), null_zero), number(v.z(), null_zero)});
+}
+
+Json rows(const Mat3<double>& M, bool null_zero = false) {
+  Json all = Json::array();
+  for (int i = 0; i < 3; ++i) all.push_back(list(M.row(i).transpose(), null_zero));
+  return all;
+}
+
+Json unit_tree(const InertialUnit<double>& unit, bool sigma, const char* part) {
+  Json tree;
+  const auto matrix = [&](const Triad<double>& triad) { return sigma ? rows(triad.M, true) : rows(triad.matrix()); };
+  if (std::string_view(part) == "gyroscope") {
+    tree["bias_rad_s"] = list(unit.gyro.bias, sigma);
+    tree["matrix"] = matrix(unit.gyro);
+    tree["cubic_s2_rad2"] = list(unit.gyro.cubic, sigma);
+    tree["g_sensitivity_s_m"] = rows(unit.g_sensitivity, sigma);
+  } else {
+    tree["bias_m_s2"] = list(unit.accel.bias, sigma);
+    tree["matrix"] = matrix(unit.accel);
+    tree["quadratic_s2_m"] = list(unit.accel.quadratic, sigma);
+  }
+  return tree;
+}
+
+Json rig_tree(const CalibrationValues& v, const std::vector<std::string>& mounts, bool sigma) {
+  Json tree;
+  tree["base_tilt_rad"] = Json::array({number(v.rig.tilt_x, sigma), number(v.rig.tilt_y, sigma)});
+  tree["heading_rad"] = number(v.rig.heading, sigma);
+  tree["axis_nonorthogonality_rad"] = number(v.rig.nonorthogonality, sigma);
+  Json eccentricity = Json::array();
+  for (const auto& e : v.rig.eccentricity) eccentricity.push_back(Json::array({number(e.cosine, sigma), number(e.sine, sigma)}));
+  tree["encoder_eccentricity_rad"] = eccentricity;
+  tree["mount_error_rad"] = Json::object();
+  for (std::size_t m = 1; m < mounts.size(); ++m) tree["mount_error_rad"][mounts[m]] = list(v.mount_error[m], sigma);
+  tree["imu_to_encoder_offset_s"] = number(v.clock_offset, sigma);
+  tree["lever_arm_m"] = Json::object();
+  for (std::size_t m = 0; m < mounts.size(); ++m) tree["lever_arm_m"][mounts[m]] = list(v.lever_arm[m], sigma);
+  return tree;
+}
+
+Json geometry_tree(const Triad<double>& triad) {
+  const TriadGeometry<double> parts = triad.geometry();
+  return {{"scale", list(parts.scale)}, {"nonorthogonality_rad", rows(parts.nonorthogonality)}, {"installation_rad", list(parts.installation)}};
+}
+
+Json tree_of(const CalibrationFile& file) {
+  const CalibrationRecord& r = file.record;
+  Json tree;
+  tree["format"] = "trunnion-calibration/1";
+  tree["imu"] = {{"model", file.model}, {"serial", file.serial}};
+  tree["gyroscope"] = unit_tree(r.value.unit, false, "gyroscope");
+  tree["accelerometer"] = unit_tree(r.value.unit, false, "accelerometer");
+  tree["sigma"] = {{"gyroscope", unit_tree(r.sigma.unit, true, "gyroscope")}, {"accelerometer", unit_tree(r.sigma.unit, true, "accelerometer")}};
+  if (r.has_rig) {
+    tree["sigma"]["rig"] = rig_tree(r.sigma, file.mounts, true);
+    tree["rig"] = rig_tree(r.value, file.mounts, false);
+  }
+  tree["geometry"] = {{"gyroscope", geometry_tree(r.value.unit.gyro)}, {"accelerometer", geometry_tree(r.value.unit.accel)}};
+  tree["recordings"] = Json::array();
+  for (std::size_t i = 0; i < static_cast<std::size_t>(r.recordings); ++i) {
+    Json one;
+    if (r.has_rig) one["mount"] = file.mounts[static_cast<std::size_t>(r.recording_mount[i])];
+    one["gyroscope_bias_rad_s"] = list(r.value.recording_bias[i].w);
+    one["accelerometer_bias_m_s2"] = list(r.value.recording_bias[i].f);
+    tree["recordings"].push_back(one);
+  }
+  tree["gauge"] = file.gauge;
+  tree["fit"] = {{"samples", r.fit.samples},
+                 {"windows", r.fit.windows},
+                 {"outliers", r.fit.outliers},
+                 {"lost_records", r.fit.lost_records},
+                 {"lost_bytes", r.fit.lost_bytes},
+                 {"reduced_chi_square", r.fit.reduced_chi_square},
+                 {"iterations", r.fit.iterations}};
+  tree["verdict"] = file.within_limits ? "within_limits" : "out_of_limits";
+  if (!file.within_limits) tree["out_of_limits"] = file.out_of_limits;
+  tree["provenance"] = {{"tool", file.tool}, {"run", file.run}};
+  if (file.seed >= 0) tree["provenance"]["seed"] = file.seed;
+  tree["provenance"]["inputs"] = Json::array();
+  for (const auto& [path, digest] : file.inputs) tree["provenance"]["inputs"].push_back({{"path", path}, {"sha256", digest}});
+  return tree;
+}
+
+bool is_flat(const Json& value) {
+  if (!value.is_structured()) return true;
+  if (value.is_object()) return false;
+  for (const Json& item : value) {
+    if (item.is_object()) return false;
+  }
+  return true;
+}
+
+/// Block style for maps, flow style for numbers: JSON scalars and lists are YAML.
+void print(const Json& value, int indent, std::string& out) {
+  for (const auto& [key, child] : value.items()) {
+    out += std::string(static_cast<std::size_t>(indent), ' ') + key + ":";
+    if (is_flat(child) || child.empty()) {
+      out += " " + child.dump() + "\n";
+    } else if (child.is_object()) {
+      out += "\n";
+      print(child, indent + 2, out);
+    } else {
+      out += "\n";
+      for (const Json& item : child) out += std::string(static_cast<std::size_t>(indent) + 2, ' ') + "- " + item.dump() + "\n";
+    }
+  }
+}
+
+void read_triads(const StrictYaml& root, bool sigma, InertialUnit<double>& unit) {
+  const auto matrix = [&](const StrictYaml& node) -> Mat3<double> {
+    return sigma ? node.matrix() : Mat3<double>(node.matrix() - Mat3<double>::Identity());
+  };
+  const StrictYaml gyro = root.at("gyroscope");
+  gyro.only({"bias_rad_s", "matrix", "cubic_s2_rad2", "g_sensitivity_s_m"});
+  unit.gyro.bias = gyro.at("bias_rad_s").vector();
+  unit.gyro.M = matrix(gyro.at("matrix"));
+  if (gyro.has("cubic_s2_rad2")) unit.gyro.cubic = gyro.at("cubic_s2_rad2").vector();
+  if (gyro.has("g_sensitivity_s_m")) unit.g_sensitivity = gyro.at("g_sensitivity_s_m").matrix();
+  const StrictYaml accel = root.at("accelerometer");
+  accel.only({"bias_m_s2", "matrix", "quadratic_s2_m"});
+  unit.accel.bias = accel.at("bias_m_s2").vector();
+  unit.accel.M = matrix(accel.at("matrix"));
+  if (accel.has("quadratic_s2_m")) unit.accel.quadratic = accel.at("quadratic_s2_m").vector();
+  if (!sigma) {
+    for (const auto& [node, triad] : {std::pair{gyro, &unit.gyro}, std::pair{accel, &unit.accel}}) {
+      if (!(std::abs(triad->matrix().determinant()) > 1e-6)) node.at("matrix").fail("cannot be inverted");
+    }
+  }
+}
+
+double number_or_null(const StrictYaml& node) { return node.is_null() ? 0.0 : node.number(); }
+
+void read_rig(const StrictYaml& rig, CalibrationValues& v, std::vector<std::string>& mounts) {
+  rig.only({"base_tilt_rad", "heading_rad", "axis_nonorthogonality_rad", "encoder_eccentricity_rad", "mount_error_rad", "imu_to_encoder_offset_s",
+            "lever_arm_m"});
+  const StrictYaml tilt = rig.at("base_tilt_rad");
+  if (tilt.length() != 2) tilt.fail("should be two numbers");
+  v.rig.tilt_x = number_or_null(tilt.at(0));
+  v.rig.tilt_y = number_or_null(tilt.at(1));
+  v.rig.heading = number_or_null(rig.at("heading_rad"));
+  v.rig.nonorthogonality = number_or_null(rig.at("axis_nonorthogonality_rad"));
+  const StrictYaml eccentricity = rig.at("encoder_eccentricity_rad");
+  if (eccentricity.length() != 2) eccentricity.fail("should be two pairs");
+  for (std::size_t a = 0; a < 2; ++a) {
+    if (eccentricity.at(a).length() != 2) eccentricity.at(a).fail("should be a pair");
+    v.rig.eccentricity[a] = {number_or_null(eccentricity.at(a).at(0)), number_or_null(eccentricity.at(a).at(1))};
+  }
+  v.clock_offset = number_or_null(rig.at("imu_to_encoder_offset_s"));
+  const StrictYaml levers = rig.at("lever_arm_m");
+  if (mounts.empty()) mounts = levers.keys();
+  if (mounts.empty() || mounts.size() > kMaxMounts) levers.fail("should name one to " + std::to_string(kMaxMounts) + " mounts");
+  levers.only(mounts);
+  rig.at("mount_error_rad").only(mounts);
+  for (std::size_t m = 0; m < mounts.size(); ++m) {
+    v.lever_arm[m] = levers.at(mounts[m]).vector();
+    if (m > 0) v.mount_error[m] = rig.at("mount_error_rad").at(mounts[m]).vector();
+  }
+}
+
+}  // namespace
+
+std::string to_yaml(const CalibrationFile& file) {
+  std::string out;
+  print(tree_of(file), 0, out);
+  return out;
+}
+
+std::string to_json(const CalibrationFile& file) { return tree_of(file).dump(2) + "\n"; }
+
+CalibrationFile read_calibration_file(const std::string& path) {
+  const StrictYaml root = StrictYaml::load(path);
+  root.only({"format", "imu", "gyroscope", "accelerometer", "sigma", "rig", "geometry", "recordings", "gauge", "fit", "verdict", "out_of_limits", "provenance"});
+  if (root.at("format").text() != "trunnion-calibration/1") root.at("format").fail("should be trunnion-calibration/1");
+  CalibrationFile file;
+  if (root.has("imu")) {
+    root.at("imu").only({"model", "serial"});
+    file.model = root.at("imu").at("model").text();
+    if (root.at("imu").has("serial")) file.serial = root.at("imu").at("serial").text();
+  }
+  CalibrationRecord& r = file.record;
+  read_triads(root, false, r.value.unit);
+  r.has_rig = root.has("rig");
+  if (r.has_rig) read_rig(root.at("rig"), r.value, file.mounts);
+  if (root.has("sigma")) {
+    const StrictYaml sigma = root.at("sigma");
+    sigma.only({"gyroscope", "accelerometer", "rig"});
+    read_triads(sigma, true, r.sigma.unit);
+    if (sigma.has("rig") && r.has_rig) read_rig(sigma.at("rig"), r.sigma, file.mounts);
+  }
+  r.mounts = static_cast<int>(file.mounts.size());
+  if (root.has("recordings")) {
+    const StrictYaml recordings = root.at("recordings");
+    if (recordings.length() > kMaxRecordings) recordings.fail("are more than " + std::to_string(kMaxRecordings));
+    r.recordings = static_cast<int>(recordings.length());
+    for (std::size_t i = 0; i < recordings.length(); ++i) {
+      const StrictYaml one = recordings.at(i);
+      one.only({"mount", "gyroscope_bias_rad_s", "accelerometer_bias_m_s2"});
+      if (r.has_rig) {
+        const auto at = std::find(file.mounts.begin(), file.mounts.end(), one.at("mount").text());
+        if (at == file.mounts.end()) one.at("mount").fail("is no mount of the rig; did you mean '" + nearest(one.at("mount").text(), file.mounts) + "'?");
+        r.recording_mount[i] = static_cast<int>(at - file.mounts.begin());
+      }
+      r.value.recording_bias[i] = {one.at("gyroscope_bias_rad_s").vector(), one.at("accelerometer_bias_m_s2").vector()};
+    }
+  }
+  if (root.has("verdict")) file.within_limits = root.at("verdict").text() == "within_limits";
+  return file;
+}
+
+}  // namespace trunnion::io

@@ -1,0 +1,175 @@
+// SPDX-FileCopyrightText: 2026 the trunnion authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "trunnion/io/run_file.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "strict_yaml.hpp"
+#include "trunnion/core/earth.hpp"
+#include "trunnion/core/units.hpp"
+
+namespace trunnion::io {
+namespace {
+
+std::string beside(const std::string& file, const std::string& path) {
+  const std::filesystem::path p(path);
+  return p.is_absolute() ? path : (std::filesystem::path(file).parent_path() / p).lexically_normal().string();
+}
+
+std::size_t entry_index(const StrictYaml& map, const std::string& key) {
+  std::vector<std::string> known;
+  for (const EntryKind& kind : kEntryKinds) known.emplace_back(kind.key);
+  map.only(known);
+  return static_cast<std::size_t>(std::find(known.begin(), known.end(), key) - known.begin());
+}
+
+ColumnMap read_columns(const StrictYaml& node) {
+  ColumnMap columns;
+  for (const std::string& quantity : node.keys()) {
+    if (!is_quantity(quantity)) node.only({"t", "gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z", "azimuth", "pitch"});
+    const StrictYaml entry = node.at(quantity);
+    entry.only({"column", "unit"});
+    ColumnChoice choice;
+    const StrictYaml column = entry.at("column");
+    if (column.is_number()) {
+      const long long index = column.integer();
+      if (index < 0 || index > 10000) column.fail("should be an index from 0 to 10000");
+      choice.index = static_cast<int>(index);
+    } else {
+      choice.name = column.text();
+      if (choice.name.empty()) column.fail("is empty");
+    }
+    choice.unit = entry.at("unit").text();
+    std::string expected;
+    if (!unit_fits(quantity, choice.unit, expected)) entry.at("unit").fail("'" + choice.unit + "' does not measure " + quantity + ": one of " + expected);
+    columns[quantity] = choice;
+  }
+  return columns;
+}
+
+RecordingFiles read_files(const StrictYaml& node, const std::string& run, bool has_rig) {
+  node.only(has_rig ? std::vector<std::string>{"mount", "log"} : std::vector<std::string>{"log"});
+  RecordingFiles files;
+  if (has_rig) files.mount = node.at("mount").text();
+  const StrictYaml log = node.at("log");
+  if (!log.is_map()) {
+    files.lcm = beside(run, log.text());
+  } else if (log.has("gyro") || log.has("accel")) {
+    log.only({"gyro", "accel", "encoder"});
+    files.gyro = beside(run, log.at("gyro").text());
+    files.accel = beside(run, log.at("accel").text());
+    if (has_rig) files.encoder = beside(run, log.at("encoder").text());
+  } else {
+    log.only({"imu", "encoder"});
+    files.imu = beside(run, log.at("imu").text());
+    if (has_rig) files.encoder = beside(run, log.at("encoder").text());
+  }
+  return files;
+}
+
+}  // namespace
+
+RunFile read_run_file(const std::string& path) {
+  const StrictYaml root = StrictYaml::load(path);
+  root.only({"format", "site", "rig", "axes", "sheet", "serial", "clock", "bias", "model", "refuse_above", "recordings", "limits", "channels", "columns"});
+  if (root.at("format").text() != "trunnion-run/1") root.at("format").fail("should be trunnion-run/1");
+  RunFile run;
+  run.path = path;
+
+  const StrictYaml site = root.at("site");
+  site.only({"latitude_deg", "height_m", "gravity_m_s2", "gravity_sigma_m_s2"});
+  run.site.latitude = site.at("latitude_deg").number_in(-90.0, 90.0) * kRadPerDeg;
+  const double height = site.has("height_m") ? site.at("height_m").number_in(-500.0, 10000.0) : 0.0;
+  run.site.gravity = site.has("gravity_m_s2") ? site.at("gravity_m_s2").number_in(9.7, 9.9) : normal_gravity(run.site.latitude, height);
+  if (site.has("gravity_sigma_m_s2")) run.site.gravity_sigma = site.at("gravity_sigma_m_s2").positive();
+
+  if (root.has("rig")) run.rig = beside(path, root.at("rig").text());
+  if (root.has("axes")) {
+    if (root.at("axes").length() != 2) root.at("axes").fail("should be two joint names, outer and inner");
+    run.outer_axis = root.at("axes").at(0).text();
+    run.inner_axis = root.at("axes").at(1).text();
+  }
+  if (root.has("sheet")) {
+    run.sheet_path = beside(path, root.at("sheet").text());
+    run.sheet = read_sensor_sheet(run.sheet_path);
+  }
+  if (root.has("serial")) run.serial = root.at("serial").text();
+  if (root.has("clock")) {
+    root.at("clock").only({"imu_to_encoder_offset"});
+    const StrictYaml offset = root.at("clock").at("imu_to_encoder_offset");
+    run.estimate_clock_offset = !offset.is_number() && offset.text() == "estimate";
+    if (!run.estimate_clock_offset) run.clock_offset = offset.number_in(-1.0, 1.0);
+  }
+  if (root.has("bias")) {
+    const std::string bias = root.at("bias").text();
+    if (bias != "per_recording" && bias != "shared") root.at("bias").fail("should be per_recording or shared");
+    run.bias_per_recording = bias == "per_recording";
+  }
+  if (root.has("model")) {
+    run.cubic = run.g_sensitivity = run.quadratic = false;
+    const StrictYaml model = root.at("model");
+    for (std::size_t i = 0; i < model.length(); ++i) {
+      const std::string term = model.at(i).text();
+      bool* const chosen = term == "cubic" ? &run.cubic : term == "g_sensitivity" ? &run.g_sensitivity : term == "quadratic" ? &run.quadratic : nullptr;
+      if (chosen == nullptr) model.at(i).fail("unknown term '" + term + "'; did you mean '" + nearest(term, {"cubic", "g_sensitivity", "quadratic"}) + "'?");
+      *chosen = true;
+    }
+  }
+  if (root.has("refuse_above")) {
+    const StrictYaml refuse = root.at("refuse_above");
+    for (const std::string& key : refuse.keys()) {
+      const std::size_t i = entry_index(refuse, key);
+      run.refuse_above[i] = refuse.at(key).positive();
+    }
+  }
+  if (root.has("limits")) {
+    const StrictYaml limits = root.at("limits");
+    for (const std::string& key : limits.keys()) {
+      const std::size_t i = entry_index(limits, key);
+      limits.at(key).only({"value", "sigma"});
+      if (limits.at(key).has("value")) run.limits[i].value = limits.at(key).at("value").positive();
+      if (limits.at(key).has("sigma")) run.limits[i].sigma = limits.at(key).at("sigma").positive();
+    }
+  }
+  if (root.has("channels")) {
+    root.at("channels").only({"imu", "encoder"});
+    if (root.at("channels").has("imu")) run.channels.imu = root.at("channels").at("imu").text();
+    if (root.at("channels").has("encoder")) run.channels.encoder = root.at("channels").at("encoder").text();
+  }
+  if (root.has("columns")) run.columns = read_columns(root.at("columns"));
+
+  const StrictYaml recordings = root.at("recordings");
+  if (recordings.length() == 0) recordings.fail("is empty");
+  for (std::size_t i = 0; i < recordings.length(); ++i) run.recordings.push_back(read_files(recordings.at(i), path, !run.rig.empty()));
+  return run;
+}
+
+LcmLosses read_recording(const RunFile& run, const RecordingFiles& files, SampleSink& sink, std::vector<std::pair<std::string, std::string>>& inputs,
+                         const Progress& progress) {
+  if (!files.lcm.empty()) {
+    Sha256 digest;
+    const LcmLosses losses = read_lcm_recording(files.lcm, run.channels, !files.mount.empty(), sink, &digest, progress);
+    inputs.emplace_back(files.lcm, digest.finish());
+    return losses;
+  }
+  std::string digest;
+  if (!files.imu.empty()) {
+    read_imu_csv(files.imu, run.columns, run.sheet, sink, digest);
+    inputs.emplace_back(files.imu, digest);
+  } else {
+    std::string accel_digest;
+    read_split_csv(files.gyro, files.accel, run.columns, run.sheet, sink, digest, accel_digest);
+    inputs.emplace_back(files.gyro, digest);
+    inputs.emplace_back(files.accel, accel_digest);
+  }
+  if (!files.encoder.empty()) {
+    read_encoder_csv(files.encoder, run.columns, sink, digest);
+    inputs.emplace_back(files.encoder, digest);
+  }
+  return {};
+}
+
+}  // namespace trunnion::io
