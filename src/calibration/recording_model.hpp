@@ -46,16 +46,17 @@ class RecordingModel {
   void rest_noise(std::vector<double>& gyro, std::vector<double>& accel) const;
 
  private:
+  struct Model;
   struct WindowInput;
 
   [[nodiscard]] double variance(std::size_t k, int row, bool moving) const;
   template <class T>
   [[nodiscard]] AxisMotion<T> motion(const CourseValue& reading) const;
-  template <class T, bool kWithRows, class VisitRow>
+  template <bool kWithRows, class VisitRow>
   double run(const CalibrationValues& values, Eigen::MatrixXd* normal, VisitRow&& visit) const;
-  template <class T, bool kWithRows>
-  bool window_input(const TwoAxisTable<T>& table, const Vec3<T>& lever, const Mat3<double>& C_bp, const std::array<Mat3<double>, 3>& dC_bp,
-                    const ObservationWindow& window, double offset, WindowInput& in) const;
+  template <bool kWithRows>
+  bool window_input(const Model& model, const ObservationWindow& window, double offset, WindowInput& in) const;
+  void add_derivatives(const Model& model, const std::array<CourseValue, 2>& reading, double weight, WindowInput& in) const;
   template <class RowNormal>
   void scatter(int row, const RowNormal& normal, Eigen::MatrixXd& into) const;
 

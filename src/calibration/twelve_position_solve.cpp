@@ -121,6 +121,7 @@ class TableProblem {
     say("starting values");
     find_start();
     say("solving");
+    reweigh();  // the coarse estimate is good enough to know an outlier by
     int iterations = minimise(start_);
     if (options_.noise_from_data) {
       for (int round = 0; round < 2; ++round) {
@@ -284,25 +285,24 @@ class TableProblem {
     return static_cast<int>(summary.iterations.size());
   }
 
-  /// Huber weights from the innovations. @return whether any weight changed by more than a tenth
+  /// Huber weights from the innovations. @return whether more than one row in ten thousand changed by a tenth
   bool reweigh() {
-    bool changed = false;
+    std::size_t changed = 0;
+    std::size_t rows = 0;
     for (auto& model : models_) {
       std::vector<std::array<float, 6>> next = model->inflation();
       model->residuals(start_, [&](std::size_t k, int row, double, double innovation) {
         float& inflation = next[k][static_cast<std::size_t>(row)];
         // the innovation was divided by an inflated sigma: undo that
         const double size = std::abs(innovation) * std::sqrt(static_cast<double>(inflation));
+        const float before = inflation;
         inflation = size > kHuber ? static_cast<float>(size / kHuber * (size / kHuber)) : 1.0F;
+        changed += std::abs(inflation - before) > 0.1F * inflation ? 1 : 0;
+        ++rows;
       });
-      for (std::size_t k = 0; k < next.size(); ++k) {
-        for (std::size_t c = 0; c < 6; ++c) {
-          changed = changed || std::abs(next[k][c] - model->inflation()[k][c]) > 0.1F * next[k][c];
-        }
-      }
       model->inflation() = std::move(next);
     }
-    return changed;
+    return changed * 10000 > rows;
   }
 
   [[nodiscard]] double scale(int i) const { return layout_.parameters[static_cast<std::size_t>(i)].refuse_above; }
