@@ -5,9 +5,10 @@
 
 #include <ceres/ceres.h>
 
+#include <Eigen/Cholesky>
+#include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
 #include "trunnion/core/error.hpp"
 #include "trunnion/core/units.hpp"
@@ -15,7 +16,13 @@
 namespace trunnion::calibration {
 namespace {
 
-constexpr int kVarianceRounds = 4;
+constexpr int kVarianceRounds = 2;
+constexpr double kRoundTolerance = 1e-3;  // of the cost, while the variances are still moving
+constexpr double kFinalTolerance = 1e-6;
+// What a rest and a turn may scatter by at first: so wide that the first round meets no outlier, only curvature.
+constexpr double kFirstForce = 0.02;  // m/s^2
+constexpr double kFirstRate = 1e-3;   // rad/s
+constexpr double kFirstTurn = 0.02;   // rad
 constexpr double kHuber = 4.0;
 constexpr double kFlatHeadingSigma = kPi / 1.7320508075688772;
 
@@ -56,7 +63,12 @@ TurnRotation integrate(const Turn& turn, const InertialUnit<double>& unit, const
   TurnRotation rotation;
   const UnitCorrection<double> correction(unit);
   const Mat3<double> K = unit.gyro.matrix();
-  if (layout != nullptr) rotation.J = Eigen::Matrix<double, 3, Eigen::Dynamic>::Zero(3, layout->size());
+  const Mat3<double> K_inverse = K.inverse();
+  // sums of C_0k d(phi_k)/d(column i of bias) times what the column is multiplied with: 1, w_j, f_j, w_i^3
+  Mat3<double> of_bias = Mat3<double>::Zero();
+  Mat3<double> of_cubic = Mat3<double>::Zero();
+  std::array<Mat3<double>, 3> of_rate = {of_bias, of_bias, of_bias};
+  std::array<Mat3<double>, 3> of_force = of_rate;
   Vec3<double> before = Vec3<double>::Zero();
   for (const TurnStep& step : turn.steps) {
     const InertialSample<double> input = correction.correct(step.mean);
@@ -64,29 +76,34 @@ TurnRotation integrate(const Turn& turn, const InertialUnit<double>& unit, const
     const Vec3<double> phi = angle + before.cross(angle) / 12.0;  // coning over this and the previous step: Savage 1998, eq. (43)
     before = angle;
     const Quaternion<double> turned = quaternion_exp<double>(phi);
-    if (layout != nullptr) {
-      Mat3<double> slope = K;
-      slope.diagonal() += 3.0 * unit.gyro.cubic.cwiseProduct(input.w.cwiseAbs2());
-      const Mat3<double> gain = -right_jacobian(phi) * slope.inverse() * step.dt;
-      auto& J = rotation.J;
-      J = turned.conjugate().toRotationMatrix() * J;
-      const auto add = [&](int place, const Vec3<double>& column, double factor) {
-        J.col(place) += column * (factor * layout->parameters[static_cast<std::size_t>(place)].refuse_above);
-      };
-      for (int i = 0; i < 3; ++i) {
-        const Vec3<double> column = gain.col(i);
-        add(layout->gyro_bias[recording] + i, column, 1.0);
-        if (layout->gyro_cubic >= 0) add(layout->gyro_cubic + i, column, input.w(i) * input.w(i) * input.w(i));
-        for (int j = 0; j < 3; ++j) {
-          add(layout->gyro_matrix + 3 * i + j, column, input.w(j));
-          if (layout->g_sensitivity >= 0) add(layout->g_sensitivity + 3 * i + j, column, input.f(j));
-        }
-      }
-    }
     rotation.q = rotation.q * turned;
     rotation.duration += step.dt;
+    if (layout == nullptr) continue;
+    // (K + 3 N w^2)^-1 to first order in N
+    const Mat3<double> inverse = K_inverse - K_inverse * (3.0 * unit.gyro.cubic.cwiseProduct(input.w.cwiseAbs2())).asDiagonal() * K_inverse;
+    const Mat3<double> gain = rotation.q.toRotationMatrix() * (right_jacobian(phi) * inverse) * -step.dt;
+    of_bias += gain;
+    of_cubic += gain * input.w.cwiseProduct(input.w.cwiseAbs2()).asDiagonal();
+    for (std::size_t j = 0; j < 3; ++j) {
+      of_rate[j] += gain * input.w(static_cast<Eigen::Index>(j));
+      of_force[j] += gain * input.f(static_cast<Eigen::Index>(j));
+    }
   }
   rotation.q.normalize();
+  if (layout == nullptr) return rotation;
+  rotation.J = Eigen::Matrix<double, 3, Eigen::Dynamic>::Zero(3, layout->size());
+  const Mat3<double> C_end = rotation.q.conjugate().toRotationMatrix();
+  const auto set = [&](int place, const Vec3<double>& column) {
+    rotation.J.col(place) = C_end * column * layout->parameters[static_cast<std::size_t>(place)].refuse_above;
+  };
+  for (int i = 0; i < 3; ++i) {
+    set(layout->gyro_bias[recording] + i, of_bias.col(i));
+    if (layout->gyro_cubic >= 0) set(layout->gyro_cubic + i, of_cubic.col(i));
+    for (int j = 0; j < 3; ++j) {
+      set(layout->gyro_matrix + 3 * i + j, of_rate[static_cast<std::size_t>(j)].col(i));
+      if (layout->g_sensitivity >= 0) set(layout->g_sensitivity + 3 * i + j, of_force[static_cast<std::size_t>(j)].col(i));
+    }
+  }
   return rotation;
 }
 
@@ -188,10 +205,12 @@ class HandProblem {
   HandSolution solve() {
     int iterations = 0;
     for (int round = 0; round < kVarianceRounds; ++round) {
-      iterations += minimise();
+      integrate_turns();
+      iterations += minimise(kRoundTolerance);
       update_components();
     }
-    iterations += minimise();
+    integrate_turns();
+    iterations += minimise(kFinalTolerance);
     return conclude(iterations);
   }
 
@@ -274,12 +293,24 @@ class HandProblem {
   [[nodiscard]] double white_rate(const Rest& rest) const { return noise_.gyro.density * noise_.gyro.density / (rest.end - rest.begin); }
   [[nodiscard]] double white_turn(const TurnRotation& turn) const { return noise_.gyro.density * noise_.gyro.density * turn.duration; }
 
-  /// Builds the problem about the present estimate; rows in the order rests, turns, priors.
+  /// Integrates every turn that is used at the present estimate.
+  void integrate_turns() {
+    const Vec3<double> w_ie_u = earth_rate_enu(site_.latitude);
+    x0_ = x_;
+    rotations_.clear();
+    std::size_t index = 0;
+    for (std::size_t r = 0; r < recordings_.size(); ++r) {
+      const InertialUnit<double> unit = unit_from(layout_, x_.data(), r);
+      for (const Turn& turn : recordings_[r].turns) {
+        if (used(index++)) rotations_.push_back(integrate(turn, unit, attitude_[first_rest_[r] + turn.from].conjugate() * w_ie_u, &layout_, r));
+      }
+    }
+  }
+
+  /// Builds the problem; rows in the order rests, turns, priors.
   void build(ceres::Problem& problem) {
     const Vec3<double> w_ie_u = earth_rate_enu(site_.latitude);
     const int n = layout_.size();
-    x0_ = x_;
-    rotations_.clear();
     rows_.clear();
     problem.AddParameterBlock(x_.data(), n);
     for (Quaternion<double>& q : attitude_) problem.AddParameterBlock(q.coeffs().data(), 4, new ceres::EigenQuaternionManifold);
@@ -300,15 +331,14 @@ class HandProblem {
       }
     }
     std::size_t index = 0;
+    auto rotation = rotations_.begin();
     for (std::size_t r = 0; r < recordings_.size(); ++r) {
-      const InertialUnit<double> unit = unit_from(layout_, x_.data(), r);
       for (const Turn& turn : recordings_[r].turns) {
         if (!used(index++)) continue;
         Quaternion<double>& before = attitude_[first_rest_[r] + turn.from];
         Quaternion<double>& after = attitude_[first_rest_[r] + turn.from + 1];
-        rotations_.push_back(std::make_unique<TurnRotation>(integrate(turn, unit, before.conjugate() * w_ie_u, &layout_, r)));
-        const double white = white_turn(*rotations_.back());
-        add(new TurnResidual{rotations_.back().get(), x0_.data(), std::sqrt(white + component_[kTurns])}, 3, new ceres::HuberLoss(kHuber),
+        const double white = white_turn(*rotation);
+        add(new TurnResidual{&*rotation++, x0_.data(), std::sqrt(white + component_[kTurns])}, 3, new ceres::HuberLoss(kHuber),
             {x_.data(), before.coeffs().data(), after.coeffs().data()}, {n, 4, 4});
         for (int i = 0; i < 3; ++i) rows_.push_back({kTurns, white});
       }
@@ -320,14 +350,14 @@ class HandProblem {
     for (std::size_t h = 0; h < heads_.size(); ++h) add(new HeadingPrior{head_start_[h]}, 1, nullptr, {attitude_[heads_[h]].coeffs().data()}, {4});
   }
 
-  int minimise() {
+  int minimise(double tolerance) {
     ceres::Problem problem;
     build(problem);
     ceres::Solver::Options solver;
     solver.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
     solver.max_num_iterations = 30;
     solver.initial_trust_region_radius = 1e8;
-    solver.function_tolerance = 1e-7;
+    solver.function_tolerance = tolerance;
     solver.logging_type = ceres::SILENT;
     ceres::Solver::Summary summary;
     ceres::Solve(solver, &problem, &summary);
@@ -341,8 +371,14 @@ class HandProblem {
     double white;
   };
 
-  /// Whitened residuals and Jacobian at the estimate, unknowns first, then three an attitude.
-  Eigen::MatrixXd jacobian(Eigen::VectorXd& residual) {
+  /// Whitened Jacobian at the estimate, unknowns first, then three columns an attitude, with its J^T J.
+  struct Linearised {
+    Eigen::SparseMatrix<double, Eigen::RowMajor> J;
+    Eigen::VectorXd residual;
+    Eigen::MatrixXd information;
+  };
+
+  Linearised linearise() {
     ceres::Problem problem;
     build(problem);
     ceres::Problem::EvaluateOptions options;
@@ -351,32 +387,34 @@ class HandProblem {
     std::vector<double> r;
     ceres::CRSMatrix J;
     problem.Evaluate(options, nullptr, &r, nullptr, &J);
-    Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(J.num_rows, J.num_cols);
-    for (int row = 0; row < J.num_rows; ++row) {
-      for (int at = J.rows[static_cast<std::size_t>(row)]; at < J.rows[static_cast<std::size_t>(row) + 1]; ++at) {
-        dense(row, J.cols[static_cast<std::size_t>(at)]) = J.values[static_cast<std::size_t>(at)];
-      }
-    }
-    residual = Eigen::Map<const Eigen::VectorXd>(r.data(), static_cast<Eigen::Index>(r.size()));
-    return dense;
+    Linearised linear;
+    linear.J = Eigen::Map<Eigen::SparseMatrix<double, Eigen::RowMajor>>(J.num_rows, J.num_cols, static_cast<Eigen::Index>(J.values.size()),
+                                                                         J.rows.data(), J.cols.data(), J.values.data());
+    linear.residual = Eigen::Map<const Eigen::VectorXd>(r.data(), static_cast<Eigen::Index>(r.size()));
+    linear.information = Eigen::SparseMatrix<double>(linear.J.transpose() * linear.J);
+    return linear;
   }
 
   /// Helmert: the variance of each component is such that its whitened squares sum to its redundancy.
   void update_components() {
-    Eigen::VectorXd residual;
-    const Eigen::MatrixXd J = jacobian(residual);
-    Eigen::MatrixXd A = Eigen::MatrixXd::Zero(J.cols(), J.cols());
-    A.selfadjointView<Eigen::Lower>().rankUpdate(J.transpose());
-    A.diagonal().array() += 1e-12;  // directions that the data do not fix carry no redundancy
-    const Eigen::LLT<Eigen::MatrixXd> factor(A.selfadjointView<Eigen::Lower>());
-    const Eigen::MatrixXd half = factor.matrixL().solve(J.transpose());
+    Linearised linear = linearise();
+    const Eigen::VectorXd& residual = linear.residual;
+    linear.information.diagonal().array() += 1e-12;  // directions that the data do not fix carry no redundancy
+    const Eigen::MatrixXd covariance = linear.information.llt().solve(Eigen::MatrixXd::Identity(linear.J.cols(), linear.J.cols()));
+    const auto leverage = [&](Eigen::Index row) {
+      double sum = 0.0;
+      for (decltype(linear.J)::InnerIterator a(linear.J, row); a; ++a) {
+        for (decltype(linear.J)::InnerIterator b(linear.J, row); b; ++b) sum += a.value() * b.value() * covariance(a.col(), b.col());
+      }
+      return sum;
+    };
     for (std::size_t c = 0; c < kComponents; ++c) {
       double redundancy = 0.0;
       std::vector<std::pair<double, double>> squares;  // raw square and white variance
       for (std::size_t row = 0; row < rows_.size(); ++row) {
         if (rows_[row].component != c) continue;
         const auto i = static_cast<Eigen::Index>(row);
-        redundancy += 1.0 - half.col(i).squaredNorm();
+        redundancy += 1.0 - leverage(i);
         squares.emplace_back(residual(i) * residual(i) * (rows_[row].white + component_[c]), rows_[row].white);
       }
       if (redundancy < 3.0) continue;
@@ -402,15 +440,13 @@ class HandProblem {
 
   HandSolution conclude(int iterations) {
     const int n = layout_.size();
-    Eigen::VectorXd residual;
-    const Eigen::MatrixXd J = jacobian(residual);
+    const Linearised linear = linearise();
+    const Eigen::Index attitudes = linear.J.cols() - n;
     // attitudes out: Schur complement
-    const Eigen::MatrixXd Jx = J.leftCols(n);
-    const Eigen::MatrixXd Jq = J.rightCols(J.cols() - n);
-    Eigen::MatrixXd Aqq = Jq.transpose() * Jq;
-    Aqq.diagonal().array() += 1e-12;
-    const Eigen::MatrixXd Axq = Jx.transpose() * Jq;
-    Eigen::MatrixXd information = Jx.transpose() * Jx - Axq * Aqq.llt().solve(Axq.transpose());
+    Eigen::MatrixXd A_qq = linear.information.bottomRightCorner(attitudes, attitudes);
+    A_qq.diagonal().array() += 1e-12;
+    const Eigen::MatrixXd A_qx = linear.information.bottomLeftCorner(attitudes, n);
+    Eigen::MatrixXd information = linear.information.topLeftCorner(n, n) - A_qx.transpose() * A_qq.llt().solve(A_qx);
     for (int i = 0; i < n; ++i) {
       for (int j = 0; j < n; ++j) information(i, j) /= scale(i) * scale(j);
     }
@@ -431,15 +467,13 @@ class HandProblem {
       record.fit.samples += recordings_[r].figures.samples;
       record.fit.windows += static_cast<long long>(recordings_[r].rests.size() + recordings_[r].turns.size());
       result.rests += static_cast<int>(recordings_[r].rests.size());
-      const std::vector<double> errors = turn_errors(recordings_[r], unit_from(layout_, x_.data(), r));
-      for (const double error : errors) {
-        ++result.turns;
+      result.turns += static_cast<int>(recordings_[r].turns.size());
+      if (options_.hold_out <= 0) continue;
+      for (const double error : turn_errors(recordings_[r], unit_from(layout_, x_.data(), r))) {
         if (!used(index++)) result.held_out.push_back(error);
       }
     }
-    const auto rows = static_cast<double>(J.rows());
-    const double attitudes = 2.0 * static_cast<double>(attitude_.size());  // their headings are held by nothing but the turns
-    record.fit.reduced_chi_square = residual.squaredNorm() / std::max(1.0, rows - n - attitudes - static_cast<double>(attitude_.size()));
+    record.fit.reduced_chi_square = linear.residual.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, linear.J.rows() - linear.J.cols()));
     record.fit.iterations = iterations;
     result.rest_scatter = std::sqrt(component_[kRestForce]);
     result.turn_scatter = std::sqrt(component_[kTurns]);
@@ -457,9 +491,9 @@ class HandProblem {
   std::vector<std::size_t> first_rest_;       // of each recording
   std::vector<std::size_t> heads_;            // rests that no turn leads to
   std::vector<Quaternion<double>> head_start_;
-  std::vector<std::unique_ptr<TurnRotation>> rotations_;
+  std::vector<TurnRotation> rotations_;
   std::vector<RowOf> rows_;
-  std::array<double, kComponents> component_{};
+  std::array<double, kComponents> component_ = {kFirstForce * kFirstForce, kFirstRate * kFirstRate, kFirstTurn * kFirstTurn};
 };
 
 }  // namespace

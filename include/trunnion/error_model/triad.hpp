@@ -49,6 +49,8 @@ struct Triad {
     return (u.array() * u.array() * (quadratic.array() + cubic.array() * u.array())).matrix();
   }
 
+  [[nodiscard]] bool is_linear() const { return quadratic.isZero(T(0)) && cubic.isZero(T(0)); }
+
   /// What the sensors read for the true input @p u, eq. (1).
   [[nodiscard]] Vec3<T> distort(const Vec3<T>& u) const { return u + M * u + bias + nonlinearity(u); }
 
@@ -56,6 +58,7 @@ struct Triad {
   [[nodiscard]] Vec3<T> correct(const Vec3<T>& measured, const Mat3<T>& inverse) const {
     const Vec3<T> unbiased = measured - bias;
     Vec3<T> u = inverse * unbiased;
+    if (is_linear()) return u;
     for (int step = 0; step < kCorrectionSteps; ++step) u = inverse * (unbiased - nonlinearity(u));
     return u;
   }
