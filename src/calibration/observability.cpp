@@ -17,6 +17,7 @@ constexpr double kRankLoss = 1e-15;     // of the largest eigenvalue
 constexpr double kShareOfBlame = 0.25;  // of an entry's variance, for a direction to be named
 constexpr double kShareOfDirection = 0.2;  // of the largest component, for an entry to be named
 constexpr std::size_t kNamesPerDirection = 6;
+constexpr double kHopeless = 1e6;  // a variance of this many limits squared: the figure would say nothing
 
 std::string figure(double value) {
   char text[32];
@@ -56,7 +57,7 @@ Observability judge(const Eigen::MatrixXd& information, const std::vector<Parame
       if (share > kShareOfBlame) blamed[static_cast<std::size_t>(j)] = true;
       if (lambda(j) <= floor) lost += share;
     }
-    const std::string sigma = lost > 0.5 ? "undetermined" : "1 sigma " + figure(std::sqrt(covariance(i, i)) * p.refuse_above * p.in_unit) + " " + p.unit;
+    const std::string sigma = lost > 0.5 || covariance(i, i) > kHopeless ? "undetermined" : "1 sigma " + figure(std::sqrt(covariance(i, i)) * p.refuse_above * p.in_unit) + " " + p.unit;
     result.refused.push_back(p.name + ": " + sigma + ", limit " + figure(p.refuse_above * p.in_unit) + " " + p.unit);
   }
   for (Eigen::Index j = 0; j < n; ++j) {

@@ -1,0 +1,155 @@
+// SPDX-FileCopyrightText: 2026 the trunnion authors
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Ten thousand mutated logs, tables, YAML files and URDFs: each is read to its end or refused, and never anything else.
+/// Under the sanitize preset a memory error or undefined behaviour ends the test.
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <functional>
+#include <random>
+
+#include "matchers/temporary_folder.hpp"
+#include "trunnion/calibration/compress.hpp"
+#include "trunnion/core/error.hpp"
+#include "trunnion/io/calibration_file.hpp"
+#include "trunnion/io/csv.hpp"
+#include "trunnion/io/lcm_recording.hpp"
+#include "trunnion/io/run_file.hpp"
+#include "trunnion/io/urdf.hpp"
+
+namespace trunnion {
+namespace {
+
+constexpr int kMutations = 2500;  // of each of the four kinds
+
+/// Flips bits, overwrites, deletes, repeats and inserts: one to eight strokes.
+std::string mutate(std::string bytes, std::mt19937_64& rng) {
+  const auto below = [&](std::size_t n) { return n == 0 ? std::size_t{0} : static_cast<std::size_t>(rng() % n); };
+  static const std::vector<std::string> kWords = {"-1", "1e999", "nan", "inf", "0", "null", "[", "]", "{", "}", ":", "\"", "<", ">", "/>", "\n", "\t", ",",
+                                                  "99999999999999999999", "- ", "&a", "*a", "!!", "<robot>", std::string("\0", 1), "\xff\xff\xff\xff", "\x7f\xff\xff\xff",
+                                                  "\xed\xa1\xda\x01"};
+  const std::size_t strokes = 1 + below(8);
+  for (std::size_t s = 0; s < strokes && !bytes.empty(); ++s) {
+    const std::size_t at = below(bytes.size());
+    const std::size_t length = std::min(bytes.size() - at, below(32) + 1);
+    switch (below(6)) {
+      case 0:
+        bytes[at] = static_cast<char>(static_cast<unsigned char>(bytes[at]) ^ (1U << below(8)));
+        break;
+      case 1:
+        bytes[at] = static_cast<char>(rng());
+        break;
+      case 2:
+        bytes.erase(at, length);
+        break;
+      case 3:
+        bytes.insert(at, bytes.substr(at, length));
+        break;
+      case 4:
+        bytes.insert(at, kWords[below(kWords.size())]);
+        break;
+      default: {
+        const std::string& word = kWords[below(kWords.size())];
+        bytes.replace(at, std::min(word.size(), bytes.size() - at), word);
+        break;
+      }
+    }
+  }
+  return bytes;
+}
+
+class ToCompressor final : public io::SampleSink {
+ public:
+  explicit ToCompressor(calibration::Compressor& c) : compressor_(c) {}
+  void imu(std::int64_t t, const InertialSample<double>& s) override { compressor_.imu(t, s); }
+  void encoder(std::int64_t t, double a, double p) override { compressor_.encoder(t, a, p); }
+
+ private:
+  calibration::Compressor& compressor_;
+};
+
+/// Feeds mutations of @p seed to @p read; every outcome but a clean read or an Error fails the test.
+void run(const char* kind, const std::string& seed, const std::string& path, const std::function<void()>& read) {
+  std::mt19937_64 rng(20261122);
+  int refused = 0;
+  for (int i = 0; i < kMutations; ++i) {
+    io::write_whole(path, mutate(seed, rng));
+    try {
+      read();
+    } catch (const Error& e) {
+      ++refused;
+      ASSERT_EQ(e.code(), ExitCode::kInput) << e.what();
+      ASSERT_STRNE(e.what(), "");
+    }
+  }
+  std::printf("[ FIGURE   ] %s: %d mutations, %d read, %d refused\n", kind, kMutations, kMutations - refused, refused);
+  // the mutations must bite, and must not all be caught at the door
+  EXPECT_GT(refused, kMutations / 100);
+  EXPECT_LT(refused, kMutations);
+}
+
+TEST(Mutations, OfLogs) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "fuzz.lcm";
+  io::LcmLogWriter log(path);
+  std::string message;
+  for (int i = 0; i < 300; ++i) {
+    io::encode_imu(1000000 + 2500 * i, i, {Vec3<double>(0.1, 0.01 * (i % 7), 0.3), Vec3<double>(1, 2, 9.8)}, message);
+    log.write(i, "IMU", message);
+    io::encode_encoder(1000000 + 2500 * i, i, 0.01 * i, 0.5, message);
+    log.write(i, "ENCODER", message);
+  }
+  log.commit();
+  run("logs", io::read_whole(path), path, [&] {
+    calibration::CompressOptions options;
+    options.name = path;
+    calibration::Compressor compressor(options);
+    ToCompressor sink(compressor);
+    io::read_lcm_recording(path, {}, true, sink);
+    static_cast<void>(compressor.finish());
+  });
+}
+
+TEST(Mutations, OfTables) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "fuzz.csv";
+  std::string text = io::imu_csv_header();
+  for (int i = 0; i < 60; ++i) io::append_imu_csv(0.01 * i, {Vec3<double>(0.1, 0.2, 0.3), Vec3<double>(1, 2, 9.8)}, text);
+  run("tables", text, path, [&] {
+    calibration::Compressor compressor({});
+    ToCompressor sink(compressor);
+    std::string digest;
+    io::read_imu_csv(path, {}, {}, sink, digest);
+  });
+}
+
+TEST(Mutations, OfYaml) {
+  const TemporaryFolder folder;
+  static_cast<void>(folder.file("sheet.yaml", io::read_whole(std::string(TRUNNION_SHARE) + "/3dm-cv7.yaml")));
+  const std::string path = folder / "run.yaml";
+  const std::string seed =
+      "format: trunnion-run/1\nsite: {latitude_deg: 43.88, height_m: 220, gravity_m_s2: 9.8, gravity_sigma_m_s2: 1e-5}\nrig: table.urdf\nsheet: sheet.yaml\n"
+      "clock: {imu_to_encoder_offset: estimate}\nbias: per_recording\nmodel: [cubic, g_sensitivity]\nrefuse_above: {gyro_scale_ppm: 500}\n"
+      "limits: {gyro_bias_deg_per_h: {value: 100, sigma: 2}}\ncolumns: {t: {column: 0, unit: s}}\nrecordings:\n  - {mount: mount_1, log: a.lcm}\n"
+      "  - {mount: mount_2, log: {imu: b.csv, encoder: c.csv}}\n";
+  run("run files", seed, path, [&] { static_cast<void>(io::read_run_file(path)); });
+  io::CalibrationFile file;
+  file.mounts = {"mount_1", "mount_2"};
+  file.record.has_rig = true;
+  file.record.mounts = 2;
+  file.record.recordings = 1;
+  const std::string calibration = folder / "calibration.yaml";
+  run("calibration files", io::to_yaml(file), calibration, [&] { static_cast<void>(io::read_calibration_file(calibration)); });
+}
+
+TEST(Mutations, OfUrdf) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "rig.urdf";
+  run("URDFs", io::read_whole(std::string(TRUNNION_SHARE) + "/two_axis_table.urdf"), path,
+      [&] { static_cast<void>(io::read_rig(path, "azimuth", "pitch")); });
+}
+
+}  // namespace
+}  // namespace trunnion

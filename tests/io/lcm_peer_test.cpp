@@ -1,0 +1,110 @@
+// SPDX-FileCopyrightText: 2026 the trunnion authors
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Our logs and messages against LCM's own reader, writer and generated types.
+
+#include <gtest/gtest.h>
+
+#include <lcm/lcm-cpp.hpp>
+#include <vector>
+
+#include "matchers/temporary_folder.hpp"
+#include "trunnion/io/lcm_recording.hpp"
+#include "trunnion_lcm/encoder_t.hpp"
+#include "trunnion_lcm/imu_batch_t.hpp"
+#include "trunnion_lcm/imu_t.hpp"
+
+namespace trunnion::io {
+namespace {
+
+TEST(LcmPeer, TheFingerprintsAreThoseOfTheGeneratedTypes) {
+  EXPECT_EQ(static_cast<std::uint64_t>(trunnion_lcm::imu_t::getHash()), kImuFingerprint);
+  EXPECT_EQ(static_cast<std::uint64_t>(trunnion_lcm::encoder_t::getHash()), kEncoderFingerprint);
+  EXPECT_EQ(static_cast<std::uint64_t>(trunnion_lcm::imu_batch_t::getHash()), kImuBatchFingerprint);
+}
+
+TEST(LcmPeer, ReadsWhatWeWrite) {
+  const TemporaryFolder folder;
+  LcmLogWriter log(folder / "ours.lcm");
+  std::string message;
+  for (int i = 0; i < 50; ++i) {
+    encode_imu(100 + i, i, {Vec3<double>(i, 0.5, -1), Vec3<double>(1, 2, 3)}, message);
+    log.write(100 + i, "IMU", message);
+    encode_encoder(100 + i, i, 0.25 * i, -0.125, message);
+    log.write(100 + i, "ENCODER", message);
+  }
+  log.commit();
+  lcm::LogFile peer(folder / "ours.lcm", "r");
+  ASSERT_TRUE(peer.good());
+  for (int i = 0; i < 50; ++i) {
+    const lcm::LogEvent* event = peer.readNextEvent();
+    ASSERT_NE(event, nullptr);
+    EXPECT_EQ(event->eventnum, 2 * i);
+    EXPECT_EQ(event->timestamp, 100 + i);
+    EXPECT_EQ(event->channel, "IMU");
+    trunnion_lcm::imu_t imu;
+    ASSERT_EQ(imu.decode(event->data, 0, event->datalen), event->datalen);
+    EXPECT_EQ(imu.utime, 100 + i);
+    EXPECT_EQ(imu.sequence, i);
+    EXPECT_EQ(imu.angular_rate[0], i);
+    EXPECT_EQ(imu.specific_force[2], 3.0);
+    event = peer.readNextEvent();
+    ASSERT_NE(event, nullptr);
+    trunnion_lcm::encoder_t encoder;
+    ASSERT_EQ(encoder.decode(event->data, 0, event->datalen), event->datalen);
+    ASSERT_EQ(encoder.num_axes, 2);
+    EXPECT_EQ(encoder.angle[0], 0.25 * i);
+  }
+  EXPECT_EQ(peer.readNextEvent(), nullptr);
+}
+
+class Collect final : public SampleSink {
+ public:
+  void imu(std::int64_t utime, const InertialSample<double>& s) override {
+    stamps.push_back(utime);
+    samples.push_back(s);
+  }
+  void encoder(std::int64_t, double, double) override {}
+  std::vector<std::int64_t> stamps;
+  std::vector<InertialSample<double>> samples;
+};
+
+TEST(LcmPeer, WeReadItsBatches) {
+  const TemporaryFolder folder;
+  {
+    lcm::LogFile peer(folder / "theirs.lcm", "w");
+    ASSERT_TRUE(peer.good());
+    trunnion_lcm::imu_batch_t batch;
+    batch.utime = 800;
+    batch.sequence = 0;
+    batch.num_samples = 8;
+    batch.temperature = 25.0;
+    for (int i = 0; i < 8; ++i) {
+      batch.sample_utime.push_back(100 * (i + 1));
+      batch.gyro_x.push_back(1.0 * i);
+      batch.gyro_y.push_back(2.0 * i);
+      batch.gyro_z.push_back(3.0 * i);
+      batch.accel_x.push_back(4.0 * i);
+      batch.accel_y.push_back(5.0 * i);
+      batch.accel_z.push_back(6.0 * i);
+    }
+    std::vector<char> data(static_cast<std::size_t>(batch.getEncodedSize()));
+    batch.encode(data.data(), 0, static_cast<int>(data.size()));
+    lcm::LogEvent event;
+    event.eventnum = 0;
+    event.timestamp = 800;
+    event.channel = "IMU";
+    event.datalen = static_cast<int>(data.size());
+    event.data = data.data();
+    peer.writeEvent(&event);
+  }
+  Collect collect;
+  read_lcm_recording(folder / "theirs.lcm", {}, false, collect);
+  ASSERT_EQ(collect.samples.size(), 8U);
+  EXPECT_EQ(collect.stamps[3], 400);
+  EXPECT_EQ(collect.samples[3].w, Vec3<double>(3, 6, 9));
+  EXPECT_EQ(collect.samples[3].f, Vec3<double>(12, 15, 18));
+}
+
+}  // namespace
+}  // namespace trunnion::io
