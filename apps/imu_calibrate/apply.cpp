@@ -62,6 +62,7 @@ long long apply_to_log(const Options& o, const UnitCorrection<double>& correctio
       out.write(event.timestamp, event.channel, event.data);
     }
   }
+  decoder.finish();
   if (sink.samples() == 0) throw io::input_error(o.input, 0, "", "no usable message on the IMU channel '" + o.channel + "'");
   out.commit();
   if (log.lost_bytes() > 0) std::fprintf(stderr, "%lld damaged records, %lld bytes passed over\n", log.lost_records(), log.lost_bytes());

@@ -279,9 +279,6 @@ class TableProblem {
     layout_.read(x, values);
     if (failed && cost == nullptr) throw Error(ExitCode::kNumerics, "the solve did not converge: " + summary.message);
     if (cost != nullptr) *cost = failed ? std::numeric_limits<double>::infinity() : summary.final_cost;
-    if (cost == nullptr && std::abs(values.clock_offset) > kLargestClockOffset) {
-      throw Error(ExitCode::kInput, "the IMU's clock is more than 0.2 s off the encoder's: state clock.imu_to_encoder_offset in the run file");
-    }
     return static_cast<int>(summary.iterations.size());
   }
 
@@ -325,6 +322,9 @@ class TableProblem {
     solution.parameters = layout_.parameters;
     layout_.write(start_, solution.x);
     solution.observability = judge(information, layout_.parameters);
+    if (solution.observability.refused.empty() && std::abs(start_.clock_offset) > kLargestClockOffset) {
+      throw Error(ExitCode::kInput, "the IMU's clock is more than 0.2 s off the encoder's: state clock.imu_to_encoder_offset in the run file");
+    }
     solution.noise = noise;
     solution.gauge = {"pitch_encoder_zero", request().mounts.front() + "_datum"};
     CalibrationRecord& record = solution.record;

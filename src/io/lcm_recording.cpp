@@ -18,6 +18,7 @@ constexpr std::size_t kEncoderHead = 8 + 8 + 8 + 4;
 constexpr std::size_t kBatchHead = 8 + 8 + 8 + 4;
 constexpr std::size_t kBatchSample = 7 * 8;
 constexpr long long kEventsPerProgress = 100000;
+constexpr double kTolerableDamage = 1e-3;  // messages that cannot be decoded, against those that can
 constexpr double kLargestReading = 1e6;  // rad/s, m/s^2
 constexpr double kLargestAngle = 1e7;    // rad
 
@@ -42,8 +43,9 @@ std::int64_t LcmDecoder::imu(const LcmEvent& event) {
   } else if (fingerprint == kImuBatchFingerprint && event.data.size() >= kBatchHead) {
     batch(event);
   } else {
-    throw foreign(event, fingerprint, "trunnion_lcm.imu_t (" + hexadecimal(kImuFingerprint) + ") or trunnion_lcm.imu_batch_t (" +
-                                          hexadecimal(kImuBatchFingerprint) + ")");
+    damage(event, foreign(event, fingerprint, "trunnion_lcm.imu_t (" + hexadecimal(kImuFingerprint) + ") or trunnion_lcm.imu_batch_t (" +
+                                                  hexadecimal(kImuBatchFingerprint) + ")"));
+    return 0;
   }
   return load_i64(p + 16);
 }
@@ -52,11 +54,11 @@ void LcmDecoder::encoder(const LcmEvent& event) {
   const char* p = event.data.data();
   const std::uint64_t fingerprint = event.data.size() >= 8 ? load_u64(p) : 0;
   if (fingerprint != kEncoderFingerprint || event.data.size() < kEncoderHead) {
-    throw foreign(event, fingerprint, "trunnion_lcm.encoder_t (" + hexadecimal(kEncoderFingerprint) + ")");
+    return damage(event, foreign(event, fingerprint, "trunnion_lcm.encoder_t (" + hexadecimal(kEncoderFingerprint) + ")"));
   }
   const auto axes = static_cast<std::int32_t>(load_u32(p + 24));
   if (axes != 2 || event.data.size() != kEncoderHead + 16) {
-    throw input_error_at_byte(path_, event.byte, "num_axes", "is " + std::to_string(axes) + ", a two-axis table has 2");
+    return damage(event, input_error_at_byte(path_, event.byte, "num_axes", "is " + std::to_string(axes) + ", a two-axis table has 2"));
   }
   const double azimuth = load_double(p + kEncoderHead);
   const double pitch = load_double(p + kEncoderHead + 8);
@@ -64,7 +66,7 @@ void LcmDecoder::encoder(const LcmEvent& event) {
     throw input_error_at_byte(path_, event.byte, std::isfinite(azimuth) ? "angle[1]" : "angle[0]", "is not finite");
   }
   if (std::abs(azimuth) > kLargestAngle || std::abs(pitch) > kLargestAngle) {
-    throw input_error_at_byte(path_, event.byte, "angle", "is beyond a million turns");
+    return damage(event, input_error_at_byte(path_, event.byte, "angle", "is beyond a million turns"));
   }
   ++encoders_;
   sink_.encoder(load_i64(p + 8), azimuth, pitch);
@@ -73,9 +75,11 @@ void LcmDecoder::encoder(const LcmEvent& event) {
 void LcmDecoder::deliver(const LcmEvent& event, std::int64_t utime, const InertialSample<double>& sample) {
   for (int i = 0; i < 3; ++i) {
     for (const auto& [value, field] : {std::pair{sample.w(i), "angular_rate["}, std::pair{sample.f(i), "specific_force["}}) {
-      if (!(std::abs(value) < kLargestReading)) {
-        throw input_error_at_byte(path_, event.byte, field + std::to_string(i) + "]", std::isfinite(value) ? "is beyond any sensor" : "is not finite");
-      }
+      if (std::abs(value) < kLargestReading) continue;
+      const Error fault =
+          input_error_at_byte(path_, event.byte, field + std::to_string(i) + "]", std::isfinite(value) ? "is beyond any sensor" : "is not finite");
+      if (!std::isfinite(value)) throw fault;
+      return damage(event, fault);
     }
   }
   ++samples_;
@@ -86,7 +90,7 @@ void LcmDecoder::batch(const LcmEvent& event) {
   const char* p = event.data.data();
   const std::uint64_t n = load_u32(p + 24);
   if (event.data.size() != kBatchHead + kBatchSample * n + 8) {
-    throw input_error_at_byte(path_, event.byte, "num_samples", "does not fit the length of the message");
+    return damage(event, input_error_at_byte(path_, event.byte, "num_samples", "does not fit the length of the message"));
   }
   const char* utime = p + kBatchHead;
   for (std::uint64_t k = 0; k < n; ++k) {
@@ -97,6 +101,17 @@ void LcmDecoder::batch(const LcmEvent& event) {
     }
     deliver(event, load_i64(utime + 8 * k), sample);
   }
+}
+
+void LcmDecoder::damage(const LcmEvent& event, const Error& fault) {
+  if (!first_fault_) first_fault_ = fault;
+  ++damaged_.records;
+  damaged_.bytes += static_cast<long long>(event.data.size());
+}
+
+void LcmDecoder::finish() const {
+  const auto whole = static_cast<double>(samples_ + encoders_);
+  if (first_fault_ && static_cast<double>(damaged_.records) > kTolerableDamage * whole) throw *first_fault_;
 }
 
 Error LcmDecoder::foreign(const LcmEvent& event, std::uint64_t fingerprint, const std::string& expected) const {
@@ -119,6 +134,7 @@ LcmLosses read_lcm_recording(const std::string& path, const LcmChannels& channel
     }
     if (progress && ++events % kEventsPerProgress == 0) progress(static_cast<double>(event.byte) / static_cast<double>(log.size()));
   }
+  decoder.finish();
   if (decoder.samples() == 0) {
     throw input_error(path, 0, "", "no usable message on the IMU channel '" + channels.imu + "'" +
                                        (log.lost_bytes() > 0 ? "; " + std::to_string(log.lost_bytes()) + " bytes are damaged" : ""));
@@ -126,7 +142,7 @@ LcmLosses read_lcm_recording(const std::string& path, const LcmChannels& channel
   if (need_encoder && decoder.encoders() == 0) {
     throw input_error(path, 0, "", "no usable message on the encoder channel '" + channels.encoder + "'");
   }
-  return {log.lost_records(), log.lost_bytes()};
+  return {log.lost_records() + decoder.damaged().records, log.lost_bytes() + decoder.damaged().bytes};
 }
 
 void encode_imu(std::int64_t utime, std::int64_t sequence, const InertialSample<double>& sample, std::string& out) {

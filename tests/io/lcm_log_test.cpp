@@ -135,9 +135,13 @@ TEST(LcmRecording, RefusesWhatItCannotUse) {
   EXPECT_REFUSES(ExitCode::kInput, "no usable message on the encoder channel 'TABLE'",
                  read_lcm_recording(write_log(folder, 10), {"IMU", "TABLE"}, true, collect));
   const std::size_t encoder_record = 2 * kPair + 28 + 3 + 80;
-  const std::string foreign = change(folder, write_log(folder, 10), [&](std::string& b) { b.replace(encoder_record + 28 + 7, 8, std::string(8, '\0')); });
+  const auto foreign = [&](int messages) {
+    return change(folder, write_log(folder, messages), [&](std::string& b) { b.replace(encoder_record + 28 + 7, 8, std::string(8, '\0')); });
+  };
   EXPECT_REFUSES(ExitCode::kInput, "byte " + std::to_string(encoder_record) + ": channel ENCODER: holds a message of another type, fingerprint 0x0000000000000000",
-                 read_lcm_recording(foreign, {}, true, collect));
+                 read_lcm_recording(foreign(10), {}, true, collect));
+  // one in two thousand is damage, and counted
+  EXPECT_EQ(read_lcm_recording(foreign(1000), {}, true, collect).records, 1);
 }
 
 TEST(LcmRecording, RefusesValuesThatAreNotFinite) {

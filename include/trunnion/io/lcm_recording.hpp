@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "trunnion/core/error.hpp"
@@ -31,7 +32,9 @@ struct LcmLosses {
   long long bytes = 0;
 };
 
-/// Decodes messages of one log into a sink. Every fault is an Error (input) with the byte and the field.
+/// Decodes messages of one log into a sink. A message that cannot be decoded is counted as damage, unless there are too
+/// many of them: then the first fault is thrown, an Error (input) with the byte and the field. Values that are not
+/// finite are refused at once.
 class LcmDecoder {
  public:
   /// The references must outlive the decoder.
@@ -42,10 +45,16 @@ class LcmDecoder {
   /// encoder_t with two axes.
   void encoder(const LcmEvent& event);
 
+  /// Call after the last message. @throws Error (input) when more than one message in a thousand could not be decoded
+  void finish() const;
+
   [[nodiscard]] long long samples() const { return samples_; }
   [[nodiscard]] long long encoders() const { return encoders_; }
+  /// Messages, and their bytes, that could not be decoded.
+  [[nodiscard]] const LcmLosses& damaged() const { return damaged_; }
 
  private:
+  void damage(const LcmEvent& event, const Error& fault);
   void deliver(const LcmEvent& event, std::int64_t utime, const InertialSample<double>& sample);
   void batch(const LcmEvent& event);
   [[nodiscard]] Error foreign(const LcmEvent& event, std::uint64_t fingerprint, const std::string& expected) const;
@@ -54,6 +63,8 @@ class LcmDecoder {
   SampleSink& sink_;
   long long samples_ = 0;
   long long encoders_ = 0;
+  LcmLosses damaged_;
+  std::optional<Error> first_fault_;
 };
 
 using Progress = std::function<void(double fraction)>;
