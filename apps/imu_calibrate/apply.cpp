@@ -28,7 +28,8 @@ struct Options {
 class Corrected final : public io::SampleSink {
  public:
   using Write = std::function<void(std::int64_t, const InertialSample<double>&)>;
-  Corrected(const UnitCorrection<double>& correction, Write write) : correction_(correction), write_(std::move(write)) {}
+  Corrected(const UnitCorrection<double>& correction, Write write)
+      : correction_(correction), write_(std::move(write)) {}
   void imu(std::int64_t utime, const InertialSample<double>& sample) override {
     ++samples_;
     write_(utime, correction_.correct(sample));
@@ -63,9 +64,11 @@ long long apply_to_log(const Options& o, const UnitCorrection<double>& correctio
     }
   }
   decoder.finish();
-  if (sink.samples() == 0) throw io::input_error(o.input, 0, "", "no usable message on the IMU channel '" + o.channel + "'");
+  if (sink.samples() == 0)
+    throw io::input_error(o.input, 0, "", "no usable message on the IMU channel '" + o.channel + "'");
   out.commit();
-  if (log.lost_bytes() > 0) std::fprintf(stderr, "%lld damaged records, %lld bytes passed over\n", log.lost_records(), log.lost_bytes());
+  if (log.lost_bytes() > 0)
+    std::fprintf(stderr, "%lld damaged records, %lld bytes passed over\n", log.lost_records(), log.lost_bytes());
   return sink.samples();
 }
 
@@ -90,14 +93,16 @@ void apply(const Options& o) {
   InertialUnit<double> unit = file.record.value.unit;
   if (o.recording > 0) {
     if (o.recording > file.record.recordings) {
-      throw io::input_error(o.calibration, 0, "recordings", "has " + std::to_string(file.record.recordings) + ", not " + std::to_string(o.recording));
+      throw io::input_error(o.calibration, 0, "recordings",
+                            "has " + std::to_string(file.record.recordings) + ", not " + std::to_string(o.recording));
     }
     const auto& bias = file.record.value.recording_bias[static_cast<std::size_t>(o.recording - 1)];
     unit.gyro.bias = bias.w;
     unit.accel.bias = bias.f;
   }
   std::error_code error;
-  if (std::filesystem::equivalent(o.input, o.output, error)) throw Error(ExitCode::kUsage, "input and output are the same file");
+  if (std::filesystem::equivalent(o.input, o.output, error))
+    throw Error(ExitCode::kUsage, "input and output are the same file");
   const UnitCorrection<double> correction(unit);
   const bool csv = std::filesystem::path(o.input).extension() == ".csv";
   const long long samples = csv ? apply_to_csv(o, correction) : apply_to_log(o, correction);
@@ -110,10 +115,15 @@ void add_apply(CLI::App& app, ExitCode& exit_code) {
   CLI::App* command = app.add_subcommand("apply", "Write a corrected log: LCM to LCM, CSV to CSV");
   auto o = std::make_shared<Options>();
   command->add_option("calibration", o->calibration, "Calibration file")->required();
-  command->add_option("input", o->input, "LCM log, or CSV with the header t_s,gyro_x_rad_s,...,accel_z_m_s2")->required();
-  command->add_option("-o,--output", o->output, "Corrected file to write; other channels of a log are copied")->required();
+  command->add_option("input", o->input, "LCM log, or CSV with the header t_s,gyro_x_rad_s,...,accel_z_m_s2")
+      ->required();
+  command->add_option("-o,--output", o->output, "Corrected file to write; other channels of a log are copied")
+      ->required();
   command->add_option("--channel", o->channel, "IMU channel of the log")->capture_default_str();
-  command->add_option("--recording", o->recording, "Use the turn-on bias of this recording, from 1; default the mean over them")->check(CLI::Range(1, 1000));
+  command
+      ->add_option("--recording", o->recording,
+                   "Use the turn-on bias of this recording, from 1; default the mean over them")
+      ->check(CLI::Range(1, 1000));
   command->footer("Example:\n  imu_calibrate apply calibration.yaml flight.lcm -o corrected.lcm");
   command->callback([o, &exit_code] {
     apply(*o);

@@ -34,7 +34,8 @@ ExitCode demo(const std::string& folder, const std::string& seed) {
 }  // namespace
 
 void add_demo(CLI::App& app, ExitCode& exit_code) {
-  CLI::App* command = app.add_subcommand("demo", "The main job from end to end on a simulated table: simulate, inspect, solve, compare, apply");
+  CLI::App* command = app.add_subcommand(
+      "demo", "The main job from end to end on a simulated table: simulate, inspect, solve, compare, apply");
   auto folder = std::make_shared<std::string>("trunnion-demo");
   auto seed = std::make_shared<std::string>("1");
   command->add_option("-o,--output", *folder, "Folder to write")->capture_default_str();

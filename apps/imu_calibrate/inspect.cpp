@@ -81,8 +81,14 @@ class ChannelStatistics {
       }
     }
     const auto regular = static_cast<double>(static_cast<long long>(steps_.size()) - gaps);
-    Json json = {{"messages", messages_}, {"rate_hz", period > 0.0 ? 1.0 / period : 0.0}, {"jitter_us", 1e6 * std::sqrt(jitter / std::max(1.0, regular))},
-                 {"gaps", gaps}, {"missing", missing}, {"longest_gap_s", longest}, {"duplicates", duplicates_}, {"stray_stamps", stray_},
+    Json json = {{"messages", messages_},
+                 {"rate_hz", period > 0.0 ? 1.0 / period : 0.0},
+                 {"jitter_us", 1e6 * std::sqrt(jitter / std::max(1.0, regular))},
+                 {"gaps", gaps},
+                 {"missing", missing},
+                 {"longest_gap_s", longest},
+                 {"duplicates", duplicates_},
+                 {"stray_stamps", stray_},
                  {"duration_s", 1e-6 * static_cast<double>(last_ - first_)}};
     for (std::size_t i = 0; i < names.size() && i < lowest_.size(); ++i) {
       json["range"][names[i]] = {lowest_[i] * in_unit, highest_[i] * in_unit};
@@ -158,31 +164,38 @@ Json inspect_recording(const io::RunFile& run, const io::RecordingFiles& files) 
 }
 
 void print_channel(const char* name, const Json& c) {
-  std::printf("  %-8s %10lld messages  %9.3f Hz  jitter %.1f us  %lld gaps (%lld missing, longest %.4f s)  %lld duplicates  %lld stray stamps  %.3f s\n", name,
-              c["messages"].get<long long>(), c["rate_hz"].get<double>(), c["jitter_us"].get<double>(), c["gaps"].get<long long>(),
-              c["missing"].get<long long>(), c["longest_gap_s"].get<double>(), c["duplicates"].get<long long>(), c["stray_stamps"].get<long long>(),
-              c["duration_s"].get<double>());
+  std::printf(
+      "  %-8s %10lld messages  %9.3f Hz  jitter %.1f us  %lld gaps (%lld missing, longest %.4f s)  %lld duplicates  "
+      "%lld stray stamps  %.3f s\n",
+      name, c["messages"].get<long long>(), c["rate_hz"].get<double>(), c["jitter_us"].get<double>(),
+      c["gaps"].get<long long>(), c["missing"].get<long long>(), c["longest_gap_s"].get<double>(),
+      c["duplicates"].get<long long>(), c["stray_stamps"].get<long long>(), c["duration_s"].get<double>());
   std::printf("           range:");
-  for (const auto& [axis, range] : c["range"].items()) std::printf(" %s %.4g..%.4g", axis.c_str(), range[0].get<double>(), range[1].get<double>());
+  for (const auto& [axis, range] : c["range"].items())
+    std::printf(" %s %.4g..%.4g", axis.c_str(), range[0].get<double>(), range[1].get<double>());
   std::printf(" (%s)\n", c["range_unit"].get<std::string>().c_str());
 }
 
 void print_text(const Json& all) {
   for (const Json& one : all["recordings"]) {
-    std::printf("%s%s\n", one["file"].get<std::string>().c_str(), one.contains("mount") ? (", " + one["mount"].get<std::string>()).c_str() : "");
+    std::printf("%s%s\n", one["file"].get<std::string>().c_str(),
+                one.contains("mount") ? (", " + one["mount"].get<std::string>()).c_str() : "");
     if (one.contains("channels")) {
       std::printf("  channels:");
-      for (const auto& [channel, messages] : one["channels"].items()) std::printf(" %s (%lld)", channel.c_str(), messages.get<long long>());
-      std::printf("; lost %lld records, %lld bytes\n", one["lost"]["records"].get<long long>(), one["lost"]["bytes"].get<long long>());
+      for (const auto& [channel, messages] : one["channels"].items())
+        std::printf(" %s (%lld)", channel.c_str(), messages.get<long long>());
+      std::printf("; lost %lld records, %lld bytes\n", one["lost"]["records"].get<long long>(),
+                  one["lost"]["bytes"].get<long long>());
     }
     if (one.contains("imu")) print_channel("IMU", one["imu"]);
     if (one.contains("encoder")) print_channel("encoder", one["encoder"]);
     if (one.contains("rests")) {
-      std::printf("  %lld rests, %.1f s in all; %lld turns between them\n", one["rests"]["count"].get<long long>(), one["rests"]["total_s"].get<double>(),
-                  one["turns"]["count"].get<long long>());
+      std::printf("  %lld rests, %.1f s in all; %lld turns between them\n", one["rests"]["count"].get<long long>(),
+                  one["rests"]["total_s"].get<double>(), one["turns"]["count"].get<long long>());
     }
     if (one.contains("noise_at_rest")) {
-      std::printf("  white noise at rest: %.3g deg/h/rtHz, %.3g ug/rtHz\n", one["noise_at_rest"]["gyro_deg_per_h_per_rt_hz"].get<double>(),
+      std::printf("  white noise at rest: %.3g deg/h/rtHz, %.3g ug/rtHz\n",
+                  one["noise_at_rest"]["gyro_deg_per_h_per_rt_hz"].get<double>(),
                   one["noise_at_rest"]["accel_ug_per_rt_hz"].get<double>());
     }
   }
@@ -215,10 +228,13 @@ void inspect(const Options& o) {
 }  // namespace
 
 void add_inspect(CLI::App& app, ExitCode& exit_code) {
-  CLI::App* command = app.add_subcommand("inspect", "What a recording holds: rates, jitter, gaps, ranges, rests and turns");
+  CLI::App* command =
+      app.add_subcommand("inspect", "What a recording holds: rates, jitter, gaps, ranges, rests and turns");
   auto o = std::make_shared<Options>();
   command->add_option("input", o->input, "Run file, LCM log or CSV")->required();
-  command->add_option("--format", o->format, "Of the result")->capture_default_str()->check(CLI::IsMember({"text", "json"}));
+  command->add_option("--format", o->format, "Of the result")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"text", "json"}));
   command->add_option("--imu-channel", o->channels.imu, "Of a log")->capture_default_str();
   command->add_option("--encoder-channel", o->channels.encoder, "Of a log")->capture_default_str();
   command->footer("Example:\n  imu_calibrate inspect run.yaml");

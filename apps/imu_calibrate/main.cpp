@@ -10,11 +10,14 @@
 namespace trunnion::app {
 
 ExitCode run_command(std::vector<std::string> arguments) {
-  CLI::App app("Finds out what an inertial unit does wrong by turning it on a two-axis table, or by hand.", "imu_calibrate");
+  CLI::App app("Finds out what an inertial unit does wrong by turning it on a two-axis table, or by hand.",
+               "imu_calibrate");
   app.set_version_flag("--version", tool_name());
   app.set_help_all_flag("--help-all", "Help of every subcommand");
   app.require_subcommand(1);
-  app.footer("Example:\n  imu_calibrate demo -o trunnion-demo\n\nExit codes: 0 done, within limits; 1 done, out of limits; 2 usage; 3 input; 4 numerics; 70 defect.");
+  app.footer(
+      "Example:\n  imu_calibrate demo -o trunnion-demo\n\nExit codes: 0 done, within limits; 1 done, out of limits; 2 "
+      "usage; 3 input; 4 numerics; 70 defect.");
   ExitCode exit_code = ExitCode::kDone;
   add_simulate(app, exit_code);
   add_inspect(app, exit_code);
@@ -43,6 +46,4 @@ ExitCode run_command(std::vector<std::string> arguments) {
 
 }  // namespace trunnion::app
 
-int main(int argc, char** argv) {
-  return static_cast<int>(trunnion::app::run_command({argv + 1, argv + argc}));
-}
+int main(int argc, char** argv) { return static_cast<int>(trunnion::app::run_command({argv + 1, argv + argc})); }

@@ -18,7 +18,9 @@ class ToCompressor final : public io::SampleSink {
  public:
   explicit ToCompressor(calibration::Compressor& compressor) : compressor_(compressor) {}
   void imu(std::int64_t utime, const InertialSample<double>& sample) override { compressor_.imu(utime, sample); }
-  void encoder(std::int64_t utime, double azimuth, double pitch) override { compressor_.encoder(utime, azimuth, pitch); }
+  void encoder(std::int64_t utime, double azimuth, double pitch) override {
+    compressor_.encoder(utime, azimuth, pitch);
+  }
 
  private:
   calibration::Compressor& compressor_;
@@ -49,7 +51,8 @@ void for_each_recording(std::size_t n, const Job& job) {
     }
   };
   std::vector<std::thread> threads;
-  for (std::size_t t = 1; t < std::min<std::size_t>(n, std::max(1U, std::thread::hardware_concurrency())); ++t) threads.emplace_back(work);
+  for (std::size_t t = 1; t < std::min<std::size_t>(n, std::max(1U, std::thread::hardware_concurrency())); ++t)
+    threads.emplace_back(work);
   work();
   for (std::thread& thread : threads) thread.join();
   for (const std::exception_ptr& one : failed) {
@@ -67,7 +70,8 @@ class ReadProgress {
       fraction_[file] = fraction;
       double sum = 0.0;
       for (const double f : fraction_) sum += f;
-      line_.show("reading " + std::to_string(static_cast<int>(100.0 * sum / static_cast<double>(fraction_.size()))) + " %");
+      line_.show("reading " + std::to_string(static_cast<int>(100.0 * sum / static_cast<double>(fraction_.size()))) +
+                 " %");
     };
   }
 
@@ -87,7 +91,9 @@ void collect(RunInputs& inputs, std::vector<RunInputs>& each) {
 
 }  // namespace
 
-std::vector<calibration::TableRecording> read_table_recordings(const io::RunFile& run, const std::vector<std::string>& mounts, RunInputs& inputs) {
+std::vector<calibration::TableRecording> read_table_recordings(const io::RunFile& run,
+                                                               const std::vector<std::string>& mounts,
+                                                               RunInputs& inputs) {
   std::vector<calibration::TableRecording> recordings(run.recordings.size());
   std::vector<RunInputs> each(run.recordings.size());
   ReadProgress progress(run.recordings.size());

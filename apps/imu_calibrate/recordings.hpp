@@ -22,7 +22,9 @@ struct RunInputs {
 };
 
 /// Reads and compresses every recording, on as many threads as the machine has. @p mounts: names, in the rig's order
-std::vector<calibration::TableRecording> read_table_recordings(const io::RunFile& run, const std::vector<std::string>& mounts, RunInputs& inputs);
+std::vector<calibration::TableRecording> read_table_recordings(const io::RunFile& run,
+                                                               const std::vector<std::string>& mounts,
+                                                               RunInputs& inputs);
 
 /// Reads every recording by hand and takes it apart.
 std::vector<calibration::HandRecording> read_hand_recordings(const io::RunFile& run, RunInputs& inputs);

@@ -38,7 +38,8 @@ struct Options {
 void simulate(const Options& o) {
   const io::SensorSheet sheet = io::read_sensor_sheet(o.sheet);
   const io::RigFile rig = io::read_rig(o.rig, "azimuth", "pitch");
-  if (rig.pitch_lower == rig.pitch_upper) throw Error(ExitCode::kInput, o.rig + ": joint 'pitch' has no limits to plan the swings by");
+  if (rig.pitch_lower == rig.pitch_upper)
+    throw Error(ExitCode::kInput, o.rig + ": joint 'pitch' has no limits to plan the swings by");
   simulation::TableRunSettings settings;
   settings.seed = o.seed;
   if (sheet.rate_hz > 0.0) settings.rate = sheet.rate_hz;
@@ -58,8 +59,8 @@ void simulate(const Options& o) {
   const fs::path folder(o.output);
   ProgressLine progress;
   std::string run = "format: trunnion-run/1\n";
-  run += "site:  {latitude_deg: " + figure(o.latitude_deg, 12) + ", height_m: " + figure(o.height_m, 12) + ", gravity_m_s2: " + figure(site.gravity, 12) +
-         ", gravity_sigma_m_s2: " + figure(o.gravity_sigma, 6) + "}\n";
+  run += "site:  {latitude_deg: " + figure(o.latitude_deg, 12) + ", height_m: " + figure(o.height_m, 12) +
+         ", gravity_m_s2: " + figure(site.gravity, 12) + ", gravity_sigma_m_s2: " + figure(o.gravity_sigma, 6) + "}\n";
   run += "rig:   rig.urdf\n";
   if (!o.no_sheet) run += "sheet: sheet.yaml\n";
   run += "serial: \"simulated, seed " + std::to_string(o.seed) + "\"\nrecordings:\n";
@@ -77,8 +78,8 @@ void simulate(const Options& o) {
       io::encode_encoder(utime, sequence, azimuth, pitch, message);
       log.write(utime, "ENCODER", message);
     };
-    const simulation::TableMotion motion =
-        o.rest_only ? simulation::rest_only(rig.pitch_lower, rig.pitch_upper) : simulation::experiment(rig.pitch_lower, rig.pitch_upper, m);
+    const simulation::TableMotion motion = o.rest_only ? simulation::rest_only(rig.pitch_lower, rig.pitch_upper)
+                                                       : simulation::experiment(rig.pitch_lower, rig.pitch_upper, m);
     simulation::run_table(settings, truth, rig.rig, site, motion, m, m, sinks);
     log.commit();
     run += "  - {mount: " + rig.mounts[static_cast<std::size_t>(m)] + ", log: " + name + "}\n";
@@ -106,17 +107,28 @@ void simulate(const Options& o) {
 }  // namespace
 
 void add_simulate(CLI::App& app, ExitCode& exit_code) {
-  CLI::App* command = app.add_subcommand("simulate", "Record a simulated run: logs, run file, sheet, rig, and the truth");
+  CLI::App* command =
+      app.add_subcommand("simulate", "Record a simulated run: logs, run file, sheet, rig, and the truth");
   auto o = std::make_shared<Options>();
   command->add_option("-o,--output", o->output, "Folder to write, made if it is not there")->required();
   command->add_option("--seed", o->seed, "Of every random number")->capture_default_str();
   command->add_option("--sheet", o->sheet, "Sensor sheet of the unit");
   command->add_option("--rig", o->rig, "URDF of the table");
-  command->add_option("--latitude-deg", o->latitude_deg, "Of the bench")->capture_default_str()->check(CLI::Range(-90.0, 90.0));
-  command->add_option("--height-m", o->height_m, "Of the bench")->capture_default_str()->check(CLI::Range(-500.0, 10000.0));
-  command->add_option("--gravity-sigma-m-s2", o->gravity_sigma, "How well gravity is known there")->capture_default_str()->check(CLI::PositiveNumber);
-  command->add_option("--outliers-percent", o->outliers_percent, "Samples off by 1 rad/s and 5 m/s^2")->capture_default_str()->check(CLI::Range(0.0, 100.0));
-  command->add_option("--dropped-percent", o->dropped_percent, "Samples that are lost")->capture_default_str()->check(CLI::Range(0.0, 99.0));
+  command->add_option("--latitude-deg", o->latitude_deg, "Of the bench")
+      ->capture_default_str()
+      ->check(CLI::Range(-90.0, 90.0));
+  command->add_option("--height-m", o->height_m, "Of the bench")
+      ->capture_default_str()
+      ->check(CLI::Range(-500.0, 10000.0));
+  command->add_option("--gravity-sigma-m-s2", o->gravity_sigma, "How well gravity is known there")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  command->add_option("--outliers-percent", o->outliers_percent, "Samples off by 1 rad/s and 5 m/s^2")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 100.0));
+  command->add_option("--dropped-percent", o->dropped_percent, "Samples that are lost")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 99.0));
   command->add_flag("--noise-free", o->noise_free, "No noise, no wander, exact encoders");
   command->add_flag("--rest-only", o->rest_only, "The table never turns: a run that cannot be solved");
   command->add_flag("--no-sheet", o->no_sheet, "Leave the sheet out of the run file");

@@ -35,10 +35,12 @@ void judge_limits(const io::RunFile& run, const calibration::Solution& solution,
     const double value = solution.x(at) * p.in_unit;
     const double sigma = std::sqrt(solution.observability.covariance(at, at)) * p.in_unit;
     if (limit.value >= 0.0 && std::abs(value) > limit.value) {
-      file.out_of_limits.push_back(p.name + ": " + figure(value, 4) + " " + p.unit + ", limit " + figure(limit.value, 4));
+      file.out_of_limits.push_back(p.name + ": " + figure(value, 4) + " " + p.unit + ", limit " +
+                                   figure(limit.value, 4));
     }
     if (limit.sigma >= 0.0 && sigma > limit.sigma) {
-      file.out_of_limits.push_back(p.name + ": sigma " + figure(sigma, 3) + " " + p.unit + ", limit " + figure(limit.sigma, 4));
+      file.out_of_limits.push_back(p.name + ": sigma " + figure(sigma, 3) + " " + p.unit + ", limit " +
+                                   figure(limit.sigma, 4));
     }
   }
   file.within_limits = file.out_of_limits.empty();
@@ -52,14 +54,17 @@ void print_text(const calibration::Solution& solution, const io::CalibrationFile
     const double sigma = std::sqrt(solution.observability.covariance(at, at)) * p.in_unit;
     const double value = solution.x(at) * p.in_unit;
     // as many digits as the sigma has to say
-    const int decimals = sigma > 0.0 && std::isfinite(sigma) ? std::clamp(2 - static_cast<int>(std::floor(std::log10(sigma))), 0, 9) : 3;
+    const int decimals =
+        sigma > 0.0 && std::isfinite(sigma) ? std::clamp(2 - static_cast<int>(std::floor(std::log10(sigma))), 0, 9) : 3;
     std::printf("%-44s %14.*f %12.*f  %s\n", p.name.c_str(), decimals, value, decimals, sigma, p.unit.c_str());
   }
   std::printf("gauge:");
   for (const std::string& g : file.gauge) std::printf(" %s", g.c_str());
   const FitFigures& fit = file.record.fit;
-  std::printf("\nfit: %lld samples, %lld windows, %lld outliers, %lld records and %lld bytes lost, reduced chi-square %.4f, %d iterations\n", fit.samples,
-              fit.windows, fit.outliers, fit.lost_records, fit.lost_bytes, fit.reduced_chi_square, fit.iterations);
+  std::printf(
+      "\nfit: %lld samples, %lld windows, %lld outliers, %lld records and %lld bytes lost, reduced chi-square %.4f, %d "
+      "iterations\n",
+      fit.samples, fit.windows, fit.outliers, fit.lost_records, fit.lost_bytes, fit.reduced_chi_square, fit.iterations);
   std::printf("verdict: %s\n", file.within_limits ? "within limits" : "out of limits");
   for (const std::string& entry : file.out_of_limits) std::printf("  %s\n", entry.c_str());
 }
@@ -86,7 +91,8 @@ calibration::Solution solve_on_table(const io::RunFile& run, RunInputs& inputs, 
   return calibration::solve_table(recordings, rig.rig, run.site, options);
 }
 
-calibration::Solution solve_hand(const io::RunFile& run, RunInputs& inputs, int hold_out, std::vector<double>& held_out) {
+calibration::Solution solve_hand(const io::RunFile& run, RunInputs& inputs, int hold_out,
+                                 std::vector<double>& held_out) {
   const std::vector<calibration::HandRecording> recordings = read_hand_recordings(run, inputs);
   calibration::HandSolveOptions options;
   options.terms = terms_of(run);
@@ -96,23 +102,27 @@ calibration::Solution solve_hand(const io::RunFile& run, RunInputs& inputs, int 
   options.noise = run.sheet.noise;
   options.hold_out = hold_out;
   calibration::HandSolution hand = calibration::solve_by_hand(recordings, run.site, options);
-  std::fprintf(stderr, "%d rests, %d turns; beyond white noise a rest scatters by %s m/s^2, a turn by %s deg\n", hand.rests, hand.turns,
-               figure(hand.rest_scatter, 3).c_str(), figure(hand.turn_scatter / kRadPerDeg, 3).c_str());
+  std::fprintf(stderr, "%d rests, %d turns; beyond white noise a rest scatters by %s m/s^2, a turn by %s deg\n",
+               hand.rests, hand.turns, figure(hand.rest_scatter, 3).c_str(),
+               figure(hand.turn_scatter / kRadPerDeg, 3).c_str());
   held_out = hand.held_out;
   return std::move(hand.solution);
 }
 
 ExitCode solve(const Options& o) {
   const io::RunFile run = io::read_run_file(o.run);
-  if (o.hold_out != 0 && !run.rig.empty()) throw Error(ExitCode::kUsage, "--hold-out is for runs by hand: this run has a rig");
+  if (o.hold_out != 0 && !run.rig.empty())
+    throw Error(ExitCode::kUsage, "--hold-out is for runs by hand: this run has a rig");
   RunInputs inputs;
   io::CalibrationFile file;
   std::vector<double> held_out;
-  calibration::Solution solution = run.rig.empty() ? solve_hand(run, inputs, o.hold_out, held_out) : solve_on_table(run, inputs, file.mounts);
+  calibration::Solution solution =
+      run.rig.empty() ? solve_hand(run, inputs, o.hold_out, held_out) : solve_on_table(run, inputs, file.mounts);
   if (inputs.losses.bytes > 0) {
     std::fprintf(stderr, "%lld damaged records, %lld bytes passed over\n", inputs.losses.records, inputs.losses.bytes);
   }
-  if (!solution.observability.refused.empty()) throw Error(ExitCode::kNumerics, calibration::describe(solution.observability));
+  if (!solution.observability.refused.empty())
+    throw Error(ExitCode::kNumerics, calibration::describe(solution.observability));
 
   file.model = run.sheet.model;
   file.serial = run.serial;
@@ -124,7 +134,8 @@ ExitCode solve(const Options& o) {
   file.run = std::filesystem::path(o.run).filename().string();
   const std::filesystem::path folder = std::filesystem::path(o.run).parent_path();
   for (const auto& [path, digest] : inputs.digests) {
-    file.inputs.emplace_back(std::filesystem::path(path).lexically_proximate(folder.empty() ? "." : folder).string(), digest);
+    file.inputs.emplace_back(std::filesystem::path(path).lexically_proximate(folder.empty() ? "." : folder).string(),
+                             digest);
   }
   judge_limits(run, solution, file);
 
@@ -146,12 +157,18 @@ ExitCode solve(const Options& o) {
 }  // namespace
 
 void add_solve(CLI::App& app, ExitCode& exit_code) {
-  CLI::App* command = app.add_subcommand("solve", "Calibrate: every error of the unit and of the table, a sigma beside each");
+  CLI::App* command =
+      app.add_subcommand("solve", "Calibrate: every error of the unit and of the table, a sigma beside each");
   auto o = std::make_shared<Options>();
   command->add_option("run", o->run, "Run file")->required();
   command->add_option("-o,--output", o->output, "Calibration file to write");
-  command->add_option("--format", o->format, "Of the result on standard output")->capture_default_str()->check(CLI::IsMember({"text", "json"}));
-  command->add_option("--hold-out", o->hold_out, "By hand: leave every n-th turn out of the fit and say how well it is predicted")->check(CLI::Range(2, 1000));
+  command->add_option("--format", o->format, "Of the result on standard output")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"text", "json"}));
+  command
+      ->add_option("--hold-out", o->hold_out,
+                   "By hand: leave every n-th turn out of the fit and say how well it is predicted")
+      ->check(CLI::Range(2, 1000));
   command->footer("Example:\n  imu_calibrate solve run.yaml -o calibration.yaml");
   command->callback([o, &exit_code] { exit_code = solve(*o); });
 }

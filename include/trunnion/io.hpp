@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the trunnion authors
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Rung 3: run files, sheets, calibrations, CSV and LCM logs. Rigs from URDF are in io/urdf.hpp, a component of its own.
+/// Rung 3: run files, sheets, calibrations, CSV and LCM logs. Rigs from URDF are in io/urdf.hpp, a component of its
+/// own.
 
 #pragma once
 

@@ -14,12 +14,13 @@ namespace trunnion::calibration {
 namespace {
 
 constexpr std::size_t kSamplesForPeriod = 256;
-constexpr double kQuickFactor = 6.0;      // largest against mean second difference of a window without outliers
+constexpr double kQuickFactor = 6.0;  // largest against mean second difference of a window without outliers
 constexpr double kOutlierSigmas = 8.0;
-constexpr double kHarmless = 1e-5;         // of the triad's largest reading in the window: one such sample costs 0.3 ppm of the window
+constexpr double kHarmless =
+    1e-5;  // of the triad's largest reading in the window: one such sample costs 0.3 ppm of the window
 constexpr double kRunningWeight = 0.05;
 constexpr double kSaturatedFraction = 1e-3;
-constexpr double kSlowestPeriod = 0.1;    // s
+constexpr double kSlowestPeriod = 0.1;  // s
 
 double median_of_five(double a, double b, double c, double d, double e) {
   if (a > b) std::swap(a, b);
@@ -48,7 +49,8 @@ double Compressor::seconds(std::int64_t utime) {
     origin_ = utime;
   }
   // unsigned, so that hostile stamps wrap and do not overflow
-  return 1e-6 * static_cast<double>(static_cast<std::int64_t>(static_cast<std::uint64_t>(utime) - static_cast<std::uint64_t>(origin_)));
+  return 1e-6 * static_cast<double>(
+                    static_cast<std::int64_t>(static_cast<std::uint64_t>(utime) - static_cast<std::uint64_t>(origin_)));
 }
 
 /// Whether a stamp is the next one of its channel; counts those that are not.
@@ -65,8 +67,9 @@ bool Compressor::accept(ChannelClock& clock, std::int64_t utime, const char* cha
     case ChannelClock::Verdict::kReset:
       break;
   }
-  throw Error(ExitCode::kInput, options_.name + ": the clock of the " + channel + " channel was reset: its stamps went to utime " +
-                                    std::to_string(utime) + " and stayed there; split the recording at that point");
+  throw Error(ExitCode::kInput, options_.name + ": the clock of the " + channel +
+                                    " channel was reset: its stamps went to utime " + std::to_string(utime) +
+                                    " and stayed there; split the recording at that point");
 }
 
 void Compressor::imu(std::int64_t utime, const InertialSample<double>& sample) {
@@ -145,7 +148,8 @@ bool Compressor::suspicious() {
       quantum = move > 0.0 ? std::min(quantum, move) : quantum;
     }
     // the two ends have one neighbour only: their first differences, held against what the neighbours do
-    largest = std::max({largest, 0.5 * std::abs(x[1] - x[0] - (x[2] - x[1])), 0.5 * std::abs(x[n - 1] - x[n - 2] - (x[n - 2] - x[n - 3]))});
+    largest = std::max({largest, 0.5 * std::abs(x[1] - x[0] - (x[2] - x[1])),
+                        0.5 * std::abs(x[n - 1] - x[n - 2] - (x[n - 2] - x[n - 3]))});
     const double mean = sum / static_cast<double>(n - 2);
     quantum_[c] = quantum;
     const double usual = usual_step_[c] > 0.0 ? std::min(mean, 2.0 * usual_step_[c]) : mean;
@@ -165,7 +169,8 @@ void Compressor::mark_outliers() {
   deviation.resize(3 * n);
   const auto quantile = [&](std::size_t from, std::size_t rank) {
     const auto at = deviation.begin() + static_cast<std::ptrdiff_t>(from + rank);
-    std::nth_element(deviation.begin() + static_cast<std::ptrdiff_t>(from), at, deviation.begin() + static_cast<std::ptrdiff_t>(from + n));
+    std::nth_element(deviation.begin() + static_cast<std::ptrdiff_t>(from), at,
+                     deviation.begin() + static_cast<std::ptrdiff_t>(from + n));
     return *at;
   };
   for (std::size_t c = 0; c < 6; ++c) {
@@ -234,8 +239,9 @@ CompressedRecording Compressor::finish() {
   figures.duration = t_last_ - t_first_;
   const long long offered = figures.samples + figures.saturated + figures.outliers;
   if (static_cast<double>(figures.saturated) > kSaturatedFraction * static_cast<double>(offered)) {
-    throw Error(ExitCode::kInput, options_.name + ": saturated: " + std::to_string(figures.saturated) + " of " + std::to_string(offered) +
-                                      " samples at or past the sheet's range, first at " + std::to_string(figures.first_saturated) +
+    throw Error(ExitCode::kInput, options_.name + ": saturated: " + std::to_string(figures.saturated) + " of " +
+                                      std::to_string(offered) + " samples at or past the sheet's range, first at " +
+                                      std::to_string(figures.first_saturated) +
                                       " s; turn slower, or correct the range in the sheet");
   }
   result_.course.finish();

@@ -20,7 +20,8 @@ constexpr std::array<double, 4> kThirdDifference = {-1.0, 3.0, -3.0, 1.0};
 
 std::array<double, 4> basis(double s) {
   const double r = 1.0 - s;
-  return {r * r * r / 6.0, (4.0 + s * s * (3.0 * s - 6.0)) / 6.0, (4.0 + r * r * (3.0 * r - 6.0)) / 6.0, s * s * s / 6.0};
+  return {r * r * r / 6.0, (4.0 + s * s * (3.0 * s - 6.0)) / 6.0, (4.0 + r * r * (3.0 * r - 6.0)) / 6.0,
+          s * s * s / 6.0};
 }
 
 double nearest_turn(double angle, double reference) {

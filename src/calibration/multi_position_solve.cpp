@@ -59,7 +59,8 @@ Mat3<double> right_jacobian(const Vec3<double>& phi) {
 }
 
 /// Integrates eq. (2). @param w_ie_b Earth rate in the case at the start; @param layout null: no derivative
-TurnRotation integrate(const Turn& turn, const InertialUnit<double>& unit, const Vec3<double>& w_ie_b, const Layout* layout, std::size_t recording) {
+TurnRotation integrate(const Turn& turn, const InertialUnit<double>& unit, const Vec3<double>& w_ie_b,
+                       const Layout* layout, std::size_t recording) {
   TurnRotation rotation;
   const UnitCorrection<double> correction(unit);
   const Mat3<double> K = unit.gyro.matrix();
@@ -73,14 +74,16 @@ TurnRotation integrate(const Turn& turn, const InertialUnit<double>& unit, const
   for (const TurnStep& step : turn.steps) {
     const InertialSample<double> input = correction.correct(step.mean);
     const Vec3<double> angle = (input.w - rotation.q.conjugate() * w_ie_b) * step.dt;
-    const Vec3<double> phi = angle + before.cross(angle) / 12.0;  // coning over this and the previous step: Savage 1998, eq. (43)
+    const Vec3<double> phi =
+        angle + before.cross(angle) / 12.0;  // coning over this and the previous step: Savage 1998, eq. (43)
     before = angle;
     const Quaternion<double> turned = quaternion_exp<double>(phi);
     rotation.q = rotation.q * turned;
     rotation.duration += step.dt;
     if (layout == nullptr) continue;
     // (K + 3 N w^2)^-1 to first order in N
-    const Mat3<double> inverse = K_inverse - K_inverse * (3.0 * unit.gyro.cubic.cwiseProduct(input.w.cwiseAbs2())).asDiagonal() * K_inverse;
+    const Mat3<double> inverse =
+        K_inverse - K_inverse * (3.0 * unit.gyro.cubic.cwiseProduct(input.w.cwiseAbs2())).asDiagonal() * K_inverse;
     const Mat3<double> gain = rotation.q.toRotationMatrix() * (right_jacobian(phi) * inverse) * -step.dt;
     of_bias += gain;
     of_cubic += gain * input.w.cwiseProduct(input.w.cwiseAbs2()).asDiagonal();
@@ -101,7 +104,8 @@ TurnRotation integrate(const Turn& turn, const InertialUnit<double>& unit, const
     if (layout->gyro_cubic >= 0) set(layout->gyro_cubic + i, of_cubic.col(i));
     for (int j = 0; j < 3; ++j) {
       set(layout->gyro_matrix + 3 * i + j, of_rate[static_cast<std::size_t>(j)].col(i));
-      if (layout->g_sensitivity >= 0) set(layout->g_sensitivity + 3 * i + j, of_force[static_cast<std::size_t>(j)].col(i));
+      if (layout->g_sensitivity >= 0)
+        set(layout->g_sensitivity + 3 * i + j, of_force[static_cast<std::size_t>(j)].col(i));
     }
   }
   return rotation;
@@ -120,7 +124,8 @@ struct RestResidual {
   bool operator()(T const* const* parameters, T* residual) const {
     const InertialUnit<T> unit = unit_from(*layout, parameters[0], recording);
     const Eigen::Map<const Quaternion<T>> q_ub(parameters[1]);
-    const T gravity = parameters[0][layout->gravity] * T(layout->parameters[static_cast<std::size_t>(layout->gravity)].refuse_above);
+    const T gravity =
+        parameters[0][layout->gravity] * T(layout->parameters[static_cast<std::size_t>(layout->gravity)].refuse_above);
     InertialSample<T> input;
     input.f = q_ub.conjugate() * Vec3<T>(T(0), T(0), gravity);
     input.w = q_ub.conjugate() * w_ie_u.cast<T>();
@@ -189,7 +194,9 @@ class HandProblem {
       first_rest_.push_back(attitude_.size());
       attitude_.resize(attitude_.size() + recordings[r].rests.size());
     }
-    if (attitude_.empty()) throw Error(ExitCode::kInput, "no rest of a second or more was found in the recordings: lay the unit down between the turns");
+    if (attitude_.empty())
+      throw Error(ExitCode::kInput,
+                  "no rest of a second or more was found in the recordings: lay the unit down between the turns");
     noise_ = options.noise;
     if (!options.has_noise) noise_ = pooled_noise();
     if (layout_.g_sensitivity >= 0) {
@@ -226,7 +233,8 @@ class HandProblem {
     r.largest_rate = 1e-3;
     for (const HandRecording& recording : recordings_) {
       for (const Turn& turn : recording.turns) {
-        for (const TurnStep& step : turn.steps) r.largest_rate = std::max(r.largest_rate, step.mean.w.cwiseAbs().maxCoeff());
+        for (const TurnStep& step : turn.steps)
+          r.largest_rate = std::max(r.largest_rate, step.mean.w.cwiseAbs().maxCoeff());
       }
     }
     return r;
@@ -263,7 +271,8 @@ class HandProblem {
       for (const Rest& rest : recording.rests) {
         const double ratio = rest.mean.f.norm() / site_.gravity;
         if (ratio < 0.7 || ratio > 1.4) {
-          throw Error(ExitCode::kInput, recording.name + ": at rest at " + std::to_string(rest.begin) + " s the specific force is " + std::to_string(ratio) +
+          throw Error(ExitCode::kInput, recording.name + ": at rest at " + std::to_string(rest.begin) +
+                                            " s the specific force is " + std::to_string(ratio) +
                                             " of gravity: wrong unit or nominal scale of the accelerometers");
         }
       }
@@ -275,11 +284,14 @@ class HandProblem {
       const InertialUnit<double> unit = unit_from(layout_, x_.data(), r);
       for (std::size_t k = 0; k < recording.rests.size(); ++k) {
         Quaternion<double> q_ub = Quaternion<double>::Identity();
-        const auto turn = std::find_if(recording.turns.begin(), recording.turns.end(), [&](const Turn& t) { return t.from + 1 == k; });
-        if (turn != recording.turns.end()) q_ub = attitude_[first_rest_[r] + k - 1] * integrate(*turn, unit, Vec3<double>::Zero(), nullptr, r).q;
+        const auto turn = std::find_if(recording.turns.begin(), recording.turns.end(),
+                                       [&](const Turn& t) { return t.from + 1 == k; });
+        if (turn != recording.turns.end())
+          q_ub = attitude_[first_rest_[r] + k - 1] * integrate(*turn, unit, Vec3<double>::Zero(), nullptr, r).q;
         // the least turn that takes the measured force to the vertical
         const Vec3<double> up = (q_ub * recording.rests[k].mean.f).normalized();
-        attitude_[first_rest_[r] + k] = (Quaternion<double>::FromTwoVectors(up, Vec3<double>::UnitZ()) * q_ub).normalized();
+        attitude_[first_rest_[r] + k] =
+            (Quaternion<double>::FromTwoVectors(up, Vec3<double>::UnitZ()) * q_ub).normalized();
         if (turn == recording.turns.end()) heads_.push_back(first_rest_[r] + k);
       }
     }
@@ -287,11 +299,20 @@ class HandProblem {
     for (const std::size_t head : heads_) head_start_.push_back(attitude_[head]);
   }
 
-  [[nodiscard]] bool used(std::size_t turn) const { return options_.hold_out <= 0 || turn % static_cast<std::size_t>(options_.hold_out) != static_cast<std::size_t>(options_.hold_out) - 1; }
+  [[nodiscard]] bool used(std::size_t turn) const {
+    return options_.hold_out <= 0 ||
+           turn % static_cast<std::size_t>(options_.hold_out) != static_cast<std::size_t>(options_.hold_out) - 1;
+  }
 
-  [[nodiscard]] double white_force(const Rest& rest) const { return noise_.accel.density * noise_.accel.density / (rest.end - rest.begin); }
-  [[nodiscard]] double white_rate(const Rest& rest) const { return noise_.gyro.density * noise_.gyro.density / (rest.end - rest.begin); }
-  [[nodiscard]] double white_turn(const TurnRotation& turn) const { return noise_.gyro.density * noise_.gyro.density * turn.duration; }
+  [[nodiscard]] double white_force(const Rest& rest) const {
+    return noise_.accel.density * noise_.accel.density / (rest.end - rest.begin);
+  }
+  [[nodiscard]] double white_rate(const Rest& rest) const {
+    return noise_.gyro.density * noise_.gyro.density / (rest.end - rest.begin);
+  }
+  [[nodiscard]] double white_turn(const TurnRotation& turn) const {
+    return noise_.gyro.density * noise_.gyro.density * turn.duration;
+  }
 
   /// Integrates every turn that is used at the present estimate.
   void integrate_turns() {
@@ -302,7 +323,9 @@ class HandProblem {
     for (std::size_t r = 0; r < recordings_.size(); ++r) {
       const InertialUnit<double> unit = unit_from(layout_, x_.data(), r);
       for (const Turn& turn : recordings_[r].turns) {
-        if (used(index++)) rotations_.push_back(integrate(turn, unit, attitude_[first_rest_[r] + turn.from].conjugate() * w_ie_u, &layout_, r));
+        if (used(index++))
+          rotations_.push_back(
+              integrate(turn, unit, attitude_[first_rest_[r] + turn.from].conjugate() * w_ie_u, &layout_, r));
       }
     }
   }
@@ -313,8 +336,10 @@ class HandProblem {
     const int n = layout_.size();
     rows_.clear();
     problem.AddParameterBlock(x_.data(), n);
-    for (Quaternion<double>& q : attitude_) problem.AddParameterBlock(q.coeffs().data(), 4, new ceres::EigenQuaternionManifold);
-    const auto add = [&](auto* functor, int residuals, ceres::LossFunction* loss, const std::vector<double*>& blocks, const std::vector<int>& sizes) {
+    for (Quaternion<double>& q : attitude_)
+      problem.AddParameterBlock(q.coeffs().data(), 4, new ceres::EigenQuaternionManifold);
+    const auto add = [&](auto* functor, int residuals, ceres::LossFunction* loss, const std::vector<double*>& blocks,
+                         const std::vector<int>& sizes) {
       auto* cost = new ceres::DynamicAutoDiffCostFunction<std::remove_pointer_t<decltype(functor)>, 8>(functor);
       for (const int size : sizes) cost->AddParameterBlock(size);
       cost->SetNumResiduals(residuals);
@@ -327,7 +352,8 @@ class HandProblem {
         const double sigma_w = std::sqrt(white_rate(rest) + component_[kRestRate]);
         add(new RestResidual{&layout_, &site_, &rest, r, w_ie_u, sigma_f, sigma_w}, 6, new ceres::HuberLoss(kHuber),
             {x_.data(), attitude_[first_rest_[r] + k].coeffs().data()}, {n, 4});
-        for (int i = 0; i < 6; ++i) rows_.push_back({i < 3 ? kRestForce : kRestRate, i < 3 ? white_force(rest) : white_rate(rest)});
+        for (int i = 0; i < 6; ++i)
+          rows_.push_back({i < 3 ? kRestForce : kRestRate, i < 3 ? white_force(rest) : white_rate(rest)});
       }
     }
     std::size_t index = 0;
@@ -338,16 +364,19 @@ class HandProblem {
         Quaternion<double>& before = attitude_[first_rest_[r] + turn.from];
         Quaternion<double>& after = attitude_[first_rest_[r] + turn.from + 1];
         const double white = white_turn(*rotation);
-        add(new TurnResidual{&*rotation++, x0_.data(), std::sqrt(white + component_[kTurns])}, 3, new ceres::HuberLoss(kHuber),
-            {x_.data(), before.coeffs().data(), after.coeffs().data()}, {n, 4, 4});
+        add(new TurnResidual{&*rotation++, x0_.data(), std::sqrt(white + component_[kTurns])}, 3,
+            new ceres::HuberLoss(kHuber), {x_.data(), before.coeffs().data(), after.coeffs().data()}, {n, 4, 4});
         for (int i = 0; i < 3; ++i) rows_.push_back({kTurns, white});
       }
     }
-    add(new UnknownPrior{layout_.gravity, site_.gravity / scale(layout_.gravity), site_.gravity_sigma / scale(layout_.gravity)}, 1, nullptr, {x_.data()}, {n});
+    add(new UnknownPrior{layout_.gravity, site_.gravity / scale(layout_.gravity),
+                         site_.gravity_sigma / scale(layout_.gravity)},
+        1, nullptr, {x_.data()}, {n});
     for (int i = layout_.g_sensitivity; layout_.g_sensitivity >= 0 && i < layout_.g_sensitivity + 9; ++i) {
       add(new UnknownPrior{i, 0.0, options_.g_sensitivity_sigma / scale(i)}, 1, nullptr, {x_.data()}, {n});
     }
-    for (std::size_t h = 0; h < heads_.size(); ++h) add(new HeadingPrior{head_start_[h]}, 1, nullptr, {attitude_[heads_[h]].coeffs().data()}, {4});
+    for (std::size_t h = 0; h < heads_.size(); ++h)
+      add(new HeadingPrior{head_start_[h]}, 1, nullptr, {attitude_[heads_[h]].coeffs().data()}, {4});
   }
 
   int minimise(double tolerance) {
@@ -361,7 +390,8 @@ class HandProblem {
     solver.logging_type = ceres::SILENT;
     ceres::Solver::Summary summary;
     ceres::Solve(solver, &problem, &summary);
-    if (summary.termination_type == ceres::FAILURE) throw Error(ExitCode::kNumerics, "the solve did not converge: " + summary.message);
+    if (summary.termination_type == ceres::FAILURE)
+      throw Error(ExitCode::kNumerics, "the solve did not converge: " + summary.message);
     for (Quaternion<double>& q : attitude_) q.normalize();
     return static_cast<int>(summary.iterations.size());
   }
@@ -388,8 +418,9 @@ class HandProblem {
     ceres::CRSMatrix J;
     problem.Evaluate(options, nullptr, &r, nullptr, &J);
     Linearised linear;
-    linear.J = Eigen::Map<Eigen::SparseMatrix<double, Eigen::RowMajor>>(J.num_rows, J.num_cols, static_cast<Eigen::Index>(J.values.size()),
-                                                                         J.rows.data(), J.cols.data(), J.values.data());
+    linear.J = Eigen::Map<Eigen::SparseMatrix<double, Eigen::RowMajor>>(J.num_rows, J.num_cols,
+                                                                        static_cast<Eigen::Index>(J.values.size()),
+                                                                        J.rows.data(), J.cols.data(), J.values.data());
     linear.residual = Eigen::Map<const Eigen::VectorXd>(r.data(), static_cast<Eigen::Index>(r.size()));
     linear.information = Eigen::SparseMatrix<double>(linear.J.transpose() * linear.J);
     return linear;
@@ -400,11 +431,13 @@ class HandProblem {
     Linearised linear = linearise();
     const Eigen::VectorXd& residual = linear.residual;
     linear.information.diagonal().array() += 1e-12;  // directions that the data do not fix carry no redundancy
-    const Eigen::MatrixXd covariance = linear.information.llt().solve(Eigen::MatrixXd::Identity(linear.J.cols(), linear.J.cols()));
+    const Eigen::MatrixXd covariance =
+        linear.information.llt().solve(Eigen::MatrixXd::Identity(linear.J.cols(), linear.J.cols()));
     const auto leverage = [&](Eigen::Index row) {
       double sum = 0.0;
       for (decltype(linear.J)::InnerIterator a(linear.J, row); a; ++a) {
-        for (decltype(linear.J)::InnerIterator b(linear.J, row); b; ++b) sum += a.value() * b.value() * covariance(a.col(), b.col());
+        for (decltype(linear.J)::InnerIterator b(linear.J, row); b; ++b)
+          sum += a.value() * b.value() * covariance(a.col(), b.col());
       }
       return sum;
     };
@@ -473,7 +506,8 @@ class HandProblem {
         if (!used(index++)) result.held_out.push_back(error);
       }
     }
-    record.fit.reduced_chi_square = linear.residual.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, linear.J.rows() - linear.J.cols()));
+    record.fit.reduced_chi_square = linear.residual.squaredNorm() /
+                                    static_cast<double>(std::max<Eigen::Index>(1, linear.J.rows() - linear.J.cols()));
     record.fit.iterations = iterations;
     result.rest_scatter = std::sqrt(component_[kRestForce]);
     result.turn_scatter = std::sqrt(component_[kTurns]);
@@ -485,22 +519,25 @@ class HandProblem {
   const HandSolveOptions& options_;
   Layout layout_;
   UnitNoise noise_;
-  Eigen::VectorXd x_;   // scaled unknowns
-  Eigen::VectorXd x0_;  // where the turns were integrated
+  Eigen::VectorXd x_;                         // scaled unknowns
+  Eigen::VectorXd x0_;                        // where the turns were integrated
   std::vector<Quaternion<double>> attitude_;  // q_ub of every rest
   std::vector<std::size_t> first_rest_;       // of each recording
   std::vector<std::size_t> heads_;            // rests that no turn leads to
   std::vector<Quaternion<double>> head_start_;
   std::vector<TurnRotation> rotations_;
   std::vector<RowOf> rows_;
-  std::array<double, kComponents> component_ = {kFirstForce * kFirstForce, kFirstRate * kFirstRate, kFirstTurn * kFirstTurn};
+  std::array<double, kComponents> component_ = {kFirstForce * kFirstForce, kFirstRate* kFirstRate,
+                                                kFirstTurn* kFirstTurn};
 };
 
 }  // namespace
 
-HandSolution solve_by_hand(const std::vector<HandRecording>& recordings, const Site& site, const HandSolveOptions& options) {
+HandSolution solve_by_hand(const std::vector<HandRecording>& recordings, const Site& site,
+                           const HandSolveOptions& options) {
   if (recordings.empty()) throw Error(ExitCode::kInput, "no recordings to solve");
-  if (recordings.size() > kMaxRecordings) throw Error(ExitCode::kInput, "more than " + std::to_string(kMaxRecordings) + " recordings in one run");
+  if (recordings.size() > kMaxRecordings)
+    throw Error(ExitCode::kInput, "more than " + std::to_string(kMaxRecordings) + " recordings in one run");
   HandProblem problem(recordings, site, options);
   return problem.solve();
 }

@@ -38,7 +38,8 @@ double deviance(const std::vector<ResidualSeries>& series, const TriadNoise& noi
 
 TriadNoise estimate_noise(const std::vector<ResidualSeries>& series, double start) {
   double longest = 1.0;
-  for (const ResidualSeries& one : series) longest = std::max(longest, one.step * static_cast<double>(one.value.size()));
+  for (const ResidualSeries& one : series)
+    longest = std::max(longest, one.step * static_cast<double>(one.value.size()));
   // the three unknowns as logarithms: density, wander against density, correlation time
   using Point = std::array<double, 3>;
   const auto noise_at = [&](const Point& p) {
@@ -68,7 +69,8 @@ TriadNoise estimate_noise(const std::vector<ResidualSeries>& series, double star
         for (const double direction : {-1.0, 1.0}) {
           Point candidate = best;
           candidate[i] += direction * step;
-          if (candidate[1] < std::log(1e-5) || candidate[2] < std::log(5.0) || candidate[2] > std::log(longest)) continue;
+          if (candidate[1] < std::log(1e-5) || candidate[2] < std::log(5.0) || candidate[2] > std::log(longest))
+            continue;
           const double value = deviance(series, noise_at(candidate));
           if (value < lowest - 1e-6) {
             lowest = value;

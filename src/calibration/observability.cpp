@@ -13,8 +13,8 @@
 namespace trunnion::calibration {
 namespace {
 
-constexpr double kRankLoss = 1e-15;     // of the largest eigenvalue
-constexpr double kShareOfBlame = 0.25;  // of an entry's variance, for a direction to be named
+constexpr double kRankLoss = 1e-15;        // of the largest eigenvalue
+constexpr double kShareOfBlame = 0.25;     // of an entry's variance, for a direction to be named
 constexpr double kShareOfDirection = 0.2;  // of the largest component, for an entry to be named
 constexpr std::size_t kNamesPerDirection = 6;
 constexpr double kHopeless = 1e6;  // a variance of this many limits squared: the figure would say nothing
@@ -32,7 +32,8 @@ Observability judge(const Eigen::MatrixXd& information, const std::vector<Parame
   Eigen::VectorXd unit(n);
   for (Eigen::Index i = 0; i < n; ++i) unit(i) = parameters[static_cast<std::size_t>(i)].refuse_above;
   const Eigen::MatrixXd A = unit.asDiagonal() * information * unit.asDiagonal();
-  // The eigenvalues of A span many decades; those of the matrix with unit diagonal do not. Rank is judged on the latter.
+  // The eigenvalues of A span many decades; those of the matrix with unit diagonal do not. Rank is judged on the
+  // latter.
   Eigen::VectorXd diagonal(n);
   for (Eigen::Index i = 0; i < n; ++i) diagonal(i) = A(i, i) > 0.0 ? 1.0 / std::sqrt(A(i, i)) : 1.0;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(diagonal.asDiagonal() * A * diagonal.asDiagonal());
@@ -57,7 +58,10 @@ Observability judge(const Eigen::MatrixXd& information, const std::vector<Parame
       if (share > kShareOfBlame) blamed[static_cast<std::size_t>(j)] = true;
       if (lambda(j) <= floor) lost += share;
     }
-    const std::string sigma = lost > 0.5 || covariance(i, i) > kHopeless ? "undetermined" : "1 sigma " + figure(std::sqrt(covariance(i, i)) * p.refuse_above * p.in_unit) + " " + p.unit;
+    const std::string sigma =
+        lost > 0.5 || covariance(i, i) > kHopeless
+            ? "undetermined"
+            : "1 sigma " + figure(std::sqrt(covariance(i, i)) * p.refuse_above * p.in_unit) + " " + p.unit;
     result.refused.push_back(p.name + ": " + sigma + ", limit " + figure(p.refuse_above * p.in_unit) + " " + p.unit);
   }
   for (Eigen::Index j = 0; j < n; ++j) {
@@ -80,12 +84,14 @@ Observability judge(const Eigen::MatrixXd& information, const std::vector<Parame
 
 std::string describe(const Observability& observability) {
   if (observability.refused.empty()) return {};
-  std::string text = "unobservable: " + std::to_string(observability.refused.size()) + " entries cannot be told from these data\n";
+  std::string text =
+      "unobservable: " + std::to_string(observability.refused.size()) + " entries cannot be told from these data\n";
   for (const std::string& entry : observability.refused) text += "  " + entry + "\n";
   text += "the directions to blame:\n";
   for (const LostDirection& direction : observability.lost) {
     text += "  ";
-    for (std::size_t i = 0; i < direction.entries.size(); ++i) text += (i == 0 ? "" : i == 1 ? " with " : ", ") + direction.entries[i];
+    for (std::size_t i = 0; i < direction.entries.size(); ++i)
+      text += (i == 0 ? "" : i == 1 ? " with " : ", ") + direction.entries[i];
     text += "\n";
   }
   return text;

@@ -48,7 +48,8 @@ Layout::Layout(const LayoutRequest& request) : refuse_above_(request.refuse_abov
   }
   if (request.terms.g_sensitivity) {
     g_sensitivity = size();
-    for (int i = 0; i < 9; ++i) add("gyro " + axis(i / 3) + " g-sensitivity to " + axis(i % 3), Entry::kGyroGSensitivity);
+    for (int i = 0; i < 9; ++i)
+      add("gyro " + axis(i / 3) + " g-sensitivity to " + axis(i % 3), Entry::kGyroGSensitivity);
   }
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
@@ -75,7 +76,8 @@ Layout::Layout(const LayoutRequest& request) : refuse_above_(request.refuse_abov
     nonorthogonality = add("axis non-orthogonality", Entry::kRigAngle);
     eccentricity = size();
     for (const char* stage : {"azimuth", "pitch"}) {
-      for (const char* part : {"cosine", "sine"}) add(std::string(stage) + " encoder eccentricity, " + part, Entry::kRigAngle);
+      for (const char* part : {"cosine", "sine"})
+        add(std::string(stage) + " encoder eccentricity, " + part, Entry::kRigAngle);
     }
     for (std::size_t m = 0; m < request.mounts.size(); ++m) {
       const bool used = request.mount_used[m];

@@ -13,11 +13,21 @@
 namespace trunnion::calibration {
 namespace {
 
-constexpr double kWindowMargin = 0.25;  // s of encoder course that a window needs on either side: room for the clock offset
-constexpr double kRestRate = 2e-4;      // rad/s: a window slower than this is one node
+constexpr double kWindowMargin =
+    0.25;                           // s of encoder course that a window needs on either side: room for the clock offset
+constexpr double kRestRate = 2e-4;  // rad/s: a window slower than this is one node
 
 // What a window depends on through the rig: the places of the derivatives in a Jet and in a row.
-enum RigPlace : int { kTilt = 0, kHeading = 2, kNonorthogonality = 3, kEccentricity = 4, kOffset = 8, kLever = 9, kGravity = 12, kRigPlaces = 13 };  // of the rig
+enum RigPlace : int {
+  kTilt = 0,
+  kHeading = 2,
+  kNonorthogonality = 3,
+  kEccentricity = 4,
+  kOffset = 8,
+  kLever = 9,
+  kGravity = 12,
+  kRigPlaces = 13
+};  // of the rig
 constexpr int kMountPlace = kRigPlaces;
 constexpr int kSharedPlaces = kRigPlaces + 3;
 // ... and through the sensor of the row
@@ -29,11 +39,12 @@ using Jet = ceres::Jet<double, kRigPlaces>;
 using Row = Eigen::Matrix<double, kRow, 1>;
 using RowNormal = Eigen::Matrix<double, kRow, kRow>;
 
-// The derivatives of a window's mean need no more than Gauss-Legendre of order two: they err by (w T)^4 / 4320, 1e-8 for
-// 50 deg/s in 0.1 s.
+// The derivatives of a window's mean need no more than Gauss-Legendre of order two: they err by (w T)^4 / 4320, 1e-8
+// for 50 deg/s in 0.1 s.
 constexpr double kDerivativeNode = 0.57735026918962576451;
 
-/// J^T J of one sensor's rows, gathered by blocks: one matrix product is many times cheaper than a rank-one update a row.
+/// J^T J of one sensor's rows, gathered by blocks: one matrix product is many times cheaper than a rank-one update a
+/// row.
 class NormalMatrix {
  public:
   void add(const Row& row) {
@@ -106,7 +117,8 @@ struct RecordingModel::WindowInput {
   Shared dw, df, dw3, df2;
 };
 
-RecordingModel::RecordingModel(const TableRecording& recording, std::size_t index, const Rig& rig, const Site& site, const Layout& layout)
+RecordingModel::RecordingModel(const TableRecording& recording, std::size_t index, const Rig& rig, const Site& site,
+                               const Layout& layout)
     : recording_(recording), index_(index), rig_(rig), site_(site), layout_(layout) {
   const CompressedRecording& data = recording.data;
   usable_.reserve(data.windows.size());
@@ -127,7 +139,9 @@ double RecordingModel::evaluate(const CalibrationValues& values, Eigen::MatrixXd
   return normal != nullptr ? run<true>(values, normal, nothing) : run<false>(values, nullptr, nothing);
 }
 
-void RecordingModel::residuals(const CalibrationValues& values, const Visit& visit) const { run<false>(values, nullptr, visit); }
+void RecordingModel::residuals(const CalibrationValues& values, const Visit& visit) const {
+  run<false>(values, nullptr, visit);
+}
 
 /// White measurement variance of a row, before robust inflation.
 double RecordingModel::variance(std::size_t k, int row, bool moving) const {
@@ -199,8 +213,8 @@ double RecordingModel::run(const CalibrationValues& values, Eigen::MatrixXd* nor
   for (std::size_t k = 0; k < usable_.size(); k += stride_) {
     const ObservationWindow& window = this->window(k);
     const bool moving = window_input<kWithRows>(model, window, values.clock_offset, in);
-    const Vec3<double> r_g = window.mean.w - (K_g * in.w + bias_g +
-                                              unit.gyro.cubic.cwiseProduct(in.w3) + unit.g_sensitivity * in.f);
+    const Vec3<double> r_g =
+        window.mean.w - (K_g * in.w + bias_g + unit.gyro.cubic.cwiseProduct(in.w3) + unit.g_sensitivity * in.f);
     const Vec3<double> r_a = window.mean.f - (K_a * in.f + bias_a + unit.accel.quadratic.cwiseProduct(in.f2));
     Shared dr_g;
     Shared dr_a;
@@ -248,7 +262,8 @@ double RecordingModel::run(const CalibrationValues& values, Eigen::MatrixXd* nor
 
 /// Mean input over the window's samples, and its derivatives. @return whether the rig moves in it
 template <bool kWithRows>
-bool RecordingModel::window_input(const Model& model, const ObservationWindow& window, double offset, WindowInput& in) const {
+bool RecordingModel::window_input(const Model& model, const ObservationWindow& window, double offset,
+                                  WindowInput& in) const {
   const EncoderCourse& course = recording_.data.course;
   std::array<std::array<CourseValue, 2>, kWindowNodes> reading;
   bool moving = false;
@@ -278,7 +293,8 @@ bool RecordingModel::window_input(const Model& model, const ObservationWindow& w
   in.w3.setZero();
   in.f2.setZero();
   for (std::size_t n = 0; n < nodes; ++n) {
-    const InertialSample<double> input = model.plain.table.input(motion<double>(reading[n][0]), motion<double>(reading[n][1]), model.plain.lever);
+    const InertialSample<double> input =
+        model.plain.table.input(motion<double>(reading[n][0]), motion<double>(reading[n][1]), model.plain.lever);
     const Vec3<double> w = model.C_bp * input.w;
     const Vec3<double> f = model.C_bp * input.f;
     in.w += weight[n] * w;
@@ -302,8 +318,10 @@ bool RecordingModel::window_input(const Model& model, const ObservationWindow& w
   return moving;
 }
 
-void RecordingModel::add_derivatives(const Model& model, const std::array<CourseValue, 2>& reading, double weight, WindowInput& in) const {
-  const InertialSample<Jet> input = model.derived->table.input(motion<Jet>(reading[0]), motion<Jet>(reading[1]), model.derived->lever);
+void RecordingModel::add_derivatives(const Model& model, const std::array<CourseValue, 2>& reading, double weight,
+                                     WindowInput& in) const {
+  const InertialSample<Jet> input =
+      model.derived->table.input(motion<Jet>(reading[0]), motion<Jet>(reading[1]), model.derived->lever);
   Eigen::Matrix<double, 3, kRigPlaces> dw_p;
   Eigen::Matrix<double, 3, kRigPlaces> df_p;
   Vec3<double> w_p;
@@ -342,7 +360,8 @@ void RecordingModel::scatter(int row, const RowNormal& normal, Eigen::MatrixXd& 
   place[kBias] = (gyro ? layout_.gyro_bias[r] : layout_.accel_bias[r]) + i;
   for (int j = 0; j < 3; ++j) {
     place[static_cast<std::size_t>(kMatrix + j)] = gyro ? layout_.gyro_matrix + 3 * i + j : layout_.accel_matrix[i][j];
-    if (gyro && layout_.g_sensitivity >= 0) place[static_cast<std::size_t>(kForceRow + j)] = layout_.g_sensitivity + 3 * i + j;
+    if (gyro && layout_.g_sensitivity >= 0)
+      place[static_cast<std::size_t>(kForceRow + j)] = layout_.g_sensitivity + 3 * i + j;
   }
   const int higher = gyro ? layout_.gyro_cubic : layout_.accel_quadratic;
   if (higher >= 0) place[kHigherOrder] = higher + i;

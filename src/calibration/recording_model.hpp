@@ -23,7 +23,8 @@ namespace trunnion::calibration {
 class RecordingModel {
  public:
   /// @param index of the recording in the layout. The references must outlive the model.
-  RecordingModel(const TableRecording& recording, std::size_t index, const Rig& rig, const Site& site, const Layout& layout);
+  RecordingModel(const TableRecording& recording, std::size_t index, const Rig& rig, const Site& site,
+                 const Layout& layout);
 
   /// Windows that have samples and encoders on all sides.
   [[nodiscard]] std::size_t windows() const { return usable_.size(); }
@@ -56,7 +57,8 @@ class RecordingModel {
   double run(const CalibrationValues& values, Eigen::MatrixXd* normal, VisitRow&& visit) const;
   template <bool kWithRows>
   bool window_input(const Model& model, const ObservationWindow& window, double offset, WindowInput& in) const;
-  void add_derivatives(const Model& model, const std::array<CourseValue, 2>& reading, double weight, WindowInput& in) const;
+  void add_derivatives(const Model& model, const std::array<CourseValue, 2>& reading, double weight,
+                       WindowInput& in) const;
   template <class RowNormal>
   void scatter(int row, const RowNormal& normal, Eigen::MatrixXd& into) const;
 

@@ -15,9 +15,9 @@ constexpr double kBlock = 0.25;          // s
 constexpr double kShortestRest = 1.0;    // s, before the ends are cut off
 constexpr double kQuietQuantile = 0.15;  // of the blocks: the unit lies still for at least this share of the recording
 constexpr double kScatterFactor = 3.0;
-constexpr double kRestRate = 0.005;      // rad/s: what g-sensitivity may change between rests
-constexpr double kTurnStep = 0.005;      // s
-constexpr double kGap = 5.0;             // periods
+constexpr double kRestRate = 0.005;  // rad/s: what g-sensitivity may change between rests
+constexpr double kTurnStep = 0.005;  // s
+constexpr double kGap = 5.0;         // periods
 
 struct Block {
   std::size_t first, last;  // samples [first, last)
@@ -43,8 +43,9 @@ void RestsAndTurns::imu(std::int64_t utime, const InertialSample<double>& sample
       ++result_.figures.stray;
       return;
     case ChannelClock::Verdict::kReset:
-      throw Error(ExitCode::kInput, result_.name + ": the clock of the IMU channel was reset: its stamps went to utime " + std::to_string(utime) +
-                                        " and stayed there; split the recording at that point");
+      throw Error(ExitCode::kInput, result_.name +
+                                        ": the clock of the IMU channel was reset: its stamps went to utime " +
+                                        std::to_string(utime) + " and stayed there; split the recording at that point");
     case ChannelClock::Verdict::kNext:
       break;
   }
@@ -67,8 +68,9 @@ HandRecording RestsAndTurns::finish(double gyro_range, double accel_range) {
     if (saturated && ++figures.saturated == 1) figures.first_saturated = s.t;
   }
   if (static_cast<double>(figures.saturated) > 1e-3 * static_cast<double>(n)) {
-    throw Error(ExitCode::kInput, result_.name + ": saturated: " + std::to_string(figures.saturated) + " of " + std::to_string(n) +
-                                      " samples at or past the sheet's range, first at " + std::to_string(figures.first_saturated) +
+    throw Error(ExitCode::kInput, result_.name + ": saturated: " + std::to_string(figures.saturated) + " of " +
+                                      std::to_string(n) + " samples at or past the sheet's range, first at " +
+                                      std::to_string(figures.first_saturated) +
                                       " s; turn slower, or correct the range in the sheet");
   }
 
@@ -113,7 +115,8 @@ HandRecording RestsAndTurns::finish(double gyro_range, double accel_range) {
   for (int i = 0; i < 3; ++i) usual(i) = quantile(rest_rate[i], 0.5);
   const double slack = kRestRate + 5.0 * quiet_w / std::sqrt(static_cast<double>(length));
   for (Block& b : blocks) {
-    b.still = b.still && (b.w - usual).cwiseAbs().maxCoeff() < slack && samples_[b.last - 1].t - samples_[b.first].t < 1.5 * kBlock + kGap * figures.period;
+    b.still = b.still && (b.w - usual).cwiseAbs().maxCoeff() < slack &&
+              samples_[b.last - 1].t - samples_[b.first].t < 1.5 * kBlock + kGap * figures.period;
   }
 
   std::vector<std::size_t> rest_first;
@@ -122,7 +125,9 @@ HandRecording RestsAndTurns::finish(double gyro_range, double accel_range) {
   std::vector<double> rest_scatter_f;
   for (std::size_t b = 0; b < blocks.size();) {
     std::size_t e = b;
-    while (e < blocks.size() && blocks[e].still && (e == b || samples_[blocks[e].first].t - samples_[blocks[e].first - 1].t < kGap * figures.period)) ++e;
+    while (e < blocks.size() && blocks[e].still &&
+           (e == b || samples_[blocks[e].first].t - samples_[blocks[e].first - 1].t < kGap * figures.period))
+      ++e;
     if (e > b + 2 && static_cast<double>(e - b) * kBlock >= kShortestRest) {
       Rest rest;
       const std::size_t first = blocks[b + 1].first;

@@ -11,19 +11,19 @@
 #include <memory>
 #include <thread>
 
+#include "recording_model.hpp"
 #include "trunnion/calibration/noise_estimate.hpp"
 #include "trunnion/core/error.hpp"
 #include "trunnion/core/units.hpp"
-#include "recording_model.hpp"
 
 namespace trunnion::calibration {
 namespace {
 
-constexpr double kLargestClockOffset = 0.2;   // s
-constexpr double kHuber = 4.0;                // sigmas
+constexpr double kLargestClockOffset = 0.2;  // s
+constexpr double kHuber = 4.0;               // sigmas
 constexpr int kRobustRounds = 4;
-constexpr int kCoarseStride = 16;             // windows
-constexpr double kNoiseStep = 1.0;            // s, of the residual series that the wander is estimated from
+constexpr int kCoarseStride = 16;   // windows
+constexpr double kNoiseStep = 1.0;  // s, of the residual series that the wander is estimated from
 
 /// One recording as one block of the Ceres problem, in square-root information form: n + 1 residuals stand for all its
 /// windows, with the same cost, gradient and J^T J, at a thousandth of the rows.
@@ -79,7 +79,9 @@ struct Prior {
 class PriorCost final : public ceres::CostFunction {
  public:
   PriorCost(const Layout& layout, const Prior& prior)
-      : size_(layout.size()), prior_(prior), scale_(layout.parameters[static_cast<std::size_t>(prior.index)].refuse_above) {
+      : size_(layout.size()),
+        prior_(prior),
+        scale_(layout.parameters[static_cast<std::size_t>(prior.index)].refuse_above) {
     mutable_parameter_block_sizes()->push_back(size_);
     set_num_residuals(1);
   }
@@ -100,7 +102,8 @@ class PriorCost final : public ceres::CostFunction {
 
 class TableProblem {
  public:
-  TableProblem(const std::vector<TableRecording>& recordings, const Rig& rig, const Site& site, const TableSolveOptions& options)
+  TableProblem(const std::vector<TableRecording>& recordings, const Rig& rig, const Site& site,
+               const TableSolveOptions& options)
       : recordings_(recordings), rig_(rig), site_(site), options_(options), layout_(request()) {
     start_.gravity = site.gravity;
     start_.clock_offset = options.clock_offset;
@@ -108,7 +111,9 @@ class TableProblem {
     for (std::size_t r = 0; r < recordings.size(); ++r) {
       models_.push_back(std::make_unique<RecordingModel>(recordings[r], r, rig, site, layout_));
       if (models_.back()->windows() == 0) {
-        throw Error(ExitCode::kInput, recordings[r].data.name + ": the encoders and the IMU do not overlap in time (IMU " + span(recordings[r]) + ")");
+        throw Error(ExitCode::kInput, recordings[r].data.name +
+                                          ": the encoders and the IMU do not overlap in time (IMU " +
+                                          span(recordings[r]) + ")");
       }
     }
     prior_ = {layout_.gravity, site.gravity, site.gravity_sigma};
@@ -150,11 +155,13 @@ class TableProblem {
     r.clock_offset = options_.estimate_clock_offset;
     r.largest_rate = 1e-3;
     r.mounts = options_.mount_names;
-    for (int m = static_cast<int>(r.mounts.size()); m < rig_.mounts; ++m) r.mounts.push_back("mount_" + std::to_string(m + 1));
+    for (int m = static_cast<int>(r.mounts.size()); m < rig_.mounts; ++m)
+      r.mounts.push_back("mount_" + std::to_string(m + 1));
     r.mount_used.assign(r.mounts.size(), false);
     for (const TableRecording& recording : recordings_) {
       r.mount_used[static_cast<std::size_t>(recording.mount)] = true;
-      for (const ObservationWindow& window : recording.data.windows) r.largest_rate = std::max(r.largest_rate, window.mean.w.cwiseAbs().maxCoeff());
+      for (const ObservationWindow& window : recording.data.windows)
+        r.largest_rate = std::max(r.largest_rate, window.mean.w.cwiseAbs().maxCoeff());
     }
     return r;
   }
@@ -163,8 +170,8 @@ class TableProblem {
     const auto& windows = recording.data.windows;
     if (windows.empty()) return "has no samples";
     char text[128];
-    std::snprintf(text, sizeof text, "%.3f s to %.3f s, encoders %.3f s to %.3f s", windows.front().t, windows.back().t, recording.data.course.begin(),
-                  recording.data.course.end());
+    std::snprintf(text, sizeof text, "%.3f s to %.3f s, encoders %.3f s to %.3f s", windows.front().t, windows.back().t,
+                  recording.data.course.begin(), recording.data.course.end());
     return text;
   }
 
@@ -185,7 +192,9 @@ class TableProblem {
     std::vector<double> accel;
     for (const auto& model : models_) model->rest_noise(gyro, accel);
     if (gyro.size() < 300) {
-      throw Error(ExitCode::kInput, "no sheet, and less than ten seconds at rest to tell the noise from: add a sheet, or rests to the run");
+      throw Error(
+          ExitCode::kInput,
+          "no sheet, and less than ten seconds at rest to tell the noise from: add a sheet, or rests to the run");
     }
     const auto density = [](std::vector<double>& v) {
       const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
@@ -261,7 +270,8 @@ class TableProblem {
     for (int i = 0; i < n; ++i) x(i) /= scale(i);
     ceres::Problem problem;
     problem.AddParameterBlock(x.data(), n);
-    for (const auto& model : models_) problem.AddResidualBlock(new RecordingCost(*model, layout_, values), nullptr, x.data());
+    for (const auto& model : models_)
+      problem.AddResidualBlock(new RecordingCost(*model, layout_, values), nullptr, x.data());
     problem.AddResidualBlock(new PriorCost(layout_, prior_), nullptr, x.data());
     ceres::Solver::Options solver;
     solver.linear_solver_type = ceres::DENSE_QR;
@@ -274,7 +284,8 @@ class TableProblem {
     solver.logging_type = ceres::SILENT;
     ceres::Solver::Summary summary;
     ceres::Solve(solver, &problem, &summary);
-    const bool failed = summary.termination_type == ceres::FAILURE || (cost == nullptr && summary.termination_type == ceres::NO_CONVERGENCE);
+    const bool failed = summary.termination_type == ceres::FAILURE ||
+                        (cost == nullptr && summary.termination_type == ceres::NO_CONVERGENCE);
     for (int i = 0; i < n; ++i) x(i) *= scale(i);
     layout_.read(x, values);
     if (failed && cost == nullptr) throw Error(ExitCode::kNumerics, "the solve did not converge: " + summary.message);
@@ -323,7 +334,9 @@ class TableProblem {
     layout_.write(start_, solution.x);
     solution.observability = judge(information, layout_.parameters);
     if (solution.observability.refused.empty() && std::abs(start_.clock_offset) > kLargestClockOffset) {
-      throw Error(ExitCode::kInput, "the IMU's clock is more than 0.2 s off the encoder's: state clock.imu_to_encoder_offset in the run file");
+      throw Error(
+          ExitCode::kInput,
+          "the IMU's clock is more than 0.2 s off the encoder's: state clock.imu_to_encoder_offset in the run file");
     }
     solution.noise = noise;
     solution.gauge = {"pitch_encoder_zero", request().mounts.front() + "_datum"};
@@ -341,7 +354,8 @@ class TableProblem {
       record.fit.windows += static_cast<long long>(models_[r]->windows());
       record.fit.outliers += figures.outliers;
       for (const auto& inflation : models_[r]->inflation()) {
-        record.fit.outliers += std::any_of(inflation.begin(), inflation.end(), [](float row) { return row > 1.0F; }) ? 1 : 0;
+        record.fit.outliers +=
+            std::any_of(inflation.begin(), inflation.end(), [](float row) { return row > 1.0F; }) ? 1 : 0;
       }
     }
     const double rows = 6.0 * static_cast<double>(record.fit.windows);
@@ -362,9 +376,11 @@ class TableProblem {
 
 }  // namespace
 
-Solution solve_table(const std::vector<TableRecording>& recordings, const Rig& rig, const Site& site, const TableSolveOptions& options) {
+Solution solve_table(const std::vector<TableRecording>& recordings, const Rig& rig, const Site& site,
+                     const TableSolveOptions& options) {
   if (recordings.empty()) throw Error(ExitCode::kInput, "no recordings to solve");
-  if (recordings.size() > kMaxRecordings) throw Error(ExitCode::kInput, "more than " + std::to_string(kMaxRecordings) + " recordings in one run");
+  if (recordings.size() > kMaxRecordings)
+    throw Error(ExitCode::kInput, "more than " + std::to_string(kMaxRecordings) + " recordings in one run");
   TableProblem problem(recordings, rig, site, options);
   return problem.solve();
 }

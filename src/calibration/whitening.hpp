@@ -21,7 +21,10 @@ template <class Row>
 class Whitening {
  public:
   Whitening(const TriadNoise& noise, const Row& zero)
-      : variance_(noise.wander * noise.wander), correlation_time_(noise.wander_correlation_time), P_(variance_), s_(zero) {}
+      : variance_(noise.wander * noise.wander),
+        correlation_time_(noise.wander_correlation_time),
+        P_(variance_),
+        s_(zero) {}
 
   /// Variance of the next innovation at time @p t [s] for the measurement variance @p R.
   double predict(double t, double R) {

@@ -50,7 +50,8 @@ Json rig_tree(const CalibrationValues& v, const std::vector<std::string>& mounts
   tree["heading_rad"] = number(v.rig.heading, sigma);
   tree["axis_nonorthogonality_rad"] = number(v.rig.nonorthogonality, sigma);
   Json eccentricity = Json::array();
-  for (const auto& e : v.rig.eccentricity) eccentricity.push_back(Json::array({number(e.cosine, sigma), number(e.sine, sigma)}));
+  for (const auto& e : v.rig.eccentricity)
+    eccentricity.push_back(Json::array({number(e.cosine, sigma), number(e.sine, sigma)}));
   tree["encoder_eccentricity_rad"] = eccentricity;
   tree["mount_error_rad"] = Json::object();
   for (std::size_t m = 1; m < mounts.size(); ++m) tree["mount_error_rad"][mounts[m]] = list(v.mount_error[m], sigma);
@@ -62,7 +63,9 @@ Json rig_tree(const CalibrationValues& v, const std::vector<std::string>& mounts
 
 Json geometry_tree(const Triad<double>& triad) {
   const TriadGeometry<double> parts = triad.geometry();
-  return {{"scale", list(parts.scale)}, {"nonorthogonality_rad", rows(parts.nonorthogonality)}, {"installation_rad", list(parts.installation)}};
+  return {{"scale", list(parts.scale)},
+          {"nonorthogonality_rad", rows(parts.nonorthogonality)},
+          {"installation_rad", list(parts.installation)}};
 }
 
 Json tree_of(const CalibrationFile& file) {
@@ -72,12 +75,14 @@ Json tree_of(const CalibrationFile& file) {
   tree["imu"] = {{"model", file.model}, {"serial", file.serial}};
   tree["gyroscope"] = unit_tree(r.value.unit, false, "gyroscope");
   tree["accelerometer"] = unit_tree(r.value.unit, false, "accelerometer");
-  tree["sigma"] = {{"gyroscope", unit_tree(r.sigma.unit, true, "gyroscope")}, {"accelerometer", unit_tree(r.sigma.unit, true, "accelerometer")}};
+  tree["sigma"] = {{"gyroscope", unit_tree(r.sigma.unit, true, "gyroscope")},
+                   {"accelerometer", unit_tree(r.sigma.unit, true, "accelerometer")}};
   if (r.has_rig) {
     tree["sigma"]["rig"] = rig_tree(r.sigma, file.mounts, true);
     tree["rig"] = rig_tree(r.value, file.mounts, false);
   }
-  tree["geometry"] = {{"gyroscope", geometry_tree(r.value.unit.gyro)}, {"accelerometer", geometry_tree(r.value.unit.accel)}};
+  tree["geometry"] = {{"gyroscope", geometry_tree(r.value.unit.gyro)},
+                      {"accelerometer", geometry_tree(r.value.unit.accel)}};
   tree["recordings"] = Json::array();
   for (std::size_t i = 0; i < static_cast<std::size_t>(r.recordings); ++i) {
     Json one;
@@ -87,19 +92,17 @@ Json tree_of(const CalibrationFile& file) {
     tree["recordings"].push_back(one);
   }
   tree["gauge"] = file.gauge;
-  tree["fit"] = {{"samples", r.fit.samples},
-                 {"windows", r.fit.windows},
-                 {"outliers", r.fit.outliers},
-                 {"lost_records", r.fit.lost_records},
-                 {"lost_bytes", r.fit.lost_bytes},
-                 {"reduced_chi_square", r.fit.reduced_chi_square},
+  tree["fit"] = {{"samples", r.fit.samples},       {"windows", r.fit.windows},
+                 {"outliers", r.fit.outliers},     {"lost_records", r.fit.lost_records},
+                 {"lost_bytes", r.fit.lost_bytes}, {"reduced_chi_square", r.fit.reduced_chi_square},
                  {"iterations", r.fit.iterations}};
   tree["verdict"] = file.within_limits ? "within_limits" : "out_of_limits";
   if (!file.within_limits) tree["out_of_limits"] = file.out_of_limits;
   tree["provenance"] = {{"tool", file.tool}, {"run", file.run}};
   if (file.seed >= 0) tree["provenance"]["seed"] = file.seed;
   tree["provenance"]["inputs"] = Json::array();
-  for (const auto& [path, digest] : file.inputs) tree["provenance"]["inputs"].push_back({{"path", path}, {"sha256", digest}});
+  for (const auto& [path, digest] : file.inputs)
+    tree["provenance"]["inputs"].push_back({{"path", path}, {"sha256", digest}});
   return tree;
 }
 
@@ -123,7 +126,8 @@ void print(const Json& value, int indent, std::string& out) {
       print(child, indent + 2, out);
     } else {
       out += "\n";
-      for (const Json& item : child) out += std::string(static_cast<std::size_t>(indent) + 2, ' ') + "- " + item.dump() + "\n";
+      for (const Json& item : child)
+        out += std::string(static_cast<std::size_t>(indent) + 2, ' ') + "- " + item.dump() + "\n";
     }
   }
 }
@@ -153,8 +157,8 @@ void read_triads(const StrictYaml& root, bool sigma, InertialUnit<double>& unit)
 double number_or_null(const StrictYaml& node) { return node.is_null() ? 0.0 : node.number(); }
 
 void read_rig(const StrictYaml& rig, CalibrationValues& v, std::vector<std::string>& mounts) {
-  rig.only({"base_tilt_rad", "heading_rad", "axis_nonorthogonality_rad", "encoder_eccentricity_rad", "mount_error_rad", "imu_to_encoder_offset_s",
-            "lever_arm_m"});
+  rig.only({"base_tilt_rad", "heading_rad", "axis_nonorthogonality_rad", "encoder_eccentricity_rad", "mount_error_rad",
+            "imu_to_encoder_offset_s", "lever_arm_m"});
   const StrictYaml tilt = rig.at("base_tilt_rad");
   if (tilt.length() != 2) tilt.fail("should be two numbers");
   v.rig.tilt_x = number_or_null(tilt.at(0));
@@ -170,7 +174,8 @@ void read_rig(const StrictYaml& rig, CalibrationValues& v, std::vector<std::stri
   v.clock_offset = number_or_null(rig.at("imu_to_encoder_offset_s"));
   const StrictYaml levers = rig.at("lever_arm_m");
   if (mounts.empty()) mounts = levers.keys();
-  if (mounts.empty() || mounts.size() > kMaxMounts) levers.fail("should name one to " + std::to_string(kMaxMounts) + " mounts");
+  if (mounts.empty() || mounts.size() > kMaxMounts)
+    levers.fail("should name one to " + std::to_string(kMaxMounts) + " mounts");
   levers.only(mounts);
   rig.at("mount_error_rad").only(mounts);
   for (std::size_t m = 0; m < mounts.size(); ++m) {
@@ -191,7 +196,8 @@ std::string to_json(const CalibrationFile& file) { return tree_of(file).dump(2) 
 
 CalibrationFile read_calibration_file(const std::string& path) {
   const StrictYaml root = StrictYaml::load(path);
-  root.only({"format", "imu", "gyroscope", "accelerometer", "sigma", "rig", "geometry", "recordings", "gauge", "fit", "verdict", "out_of_limits", "provenance"});
+  root.only({"format", "imu", "gyroscope", "accelerometer", "sigma", "rig", "geometry", "recordings", "gauge", "fit",
+             "verdict", "out_of_limits", "provenance"});
   if (root.at("format").text() != "trunnion-calibration/1") root.at("format").fail("should be trunnion-calibration/1");
   CalibrationFile file;
   if (root.has("imu")) {
@@ -219,7 +225,9 @@ CalibrationFile read_calibration_file(const std::string& path) {
       one.only({"mount", "gyroscope_bias_rad_s", "accelerometer_bias_m_s2"});
       if (r.has_rig) {
         const auto at = std::find(file.mounts.begin(), file.mounts.end(), one.at("mount").text());
-        if (at == file.mounts.end()) one.at("mount").fail("is no mount of the rig; did you mean '" + nearest(one.at("mount").text(), file.mounts) + "'?");
+        if (at == file.mounts.end())
+          one.at("mount").fail("is no mount of the rig; did you mean '" + nearest(one.at("mount").text(), file.mounts) +
+                               "'?");
         r.recording_mount[i] = static_cast<int>(at - file.mounts.begin());
       }
       r.value.recording_bias[i] = {one.at("gyroscope_bias_rad_s").vector(), one.at("accelerometer_bias_m_s2").vector()};

@@ -24,9 +24,12 @@ struct Unit {
   double si;
 };
 
-constexpr std::array<Unit, 4> kTimeUnits = {{{"s", "_s", 1.0}, {"ms", "_ms", 1e-3}, {"us", "_us", 1e-6}, {"ns", "_ns", 1e-9}}};
-constexpr std::array<Unit, 3> kRateUnits = {{{"rad/s", "_rad_s", 1.0}, {"deg/s", "_deg_s", kRadPerDeg}, {"deg/h", "_deg_h", kRadPerSPerDegPerH}}};
-constexpr std::array<Unit, 3> kForceUnits = {{{"m/s^2", "_m_s2", 1.0}, {"g", "_g", kStandardGravity}, {"mg", "_mg", 1e-3 * kStandardGravity}}};
+constexpr std::array<Unit, 4> kTimeUnits = {
+    {{"s", "_s", 1.0}, {"ms", "_ms", 1e-3}, {"us", "_us", 1e-6}, {"ns", "_ns", 1e-9}}};
+constexpr std::array<Unit, 3> kRateUnits = {
+    {{"rad/s", "_rad_s", 1.0}, {"deg/s", "_deg_s", kRadPerDeg}, {"deg/h", "_deg_h", kRadPerSPerDegPerH}}};
+constexpr std::array<Unit, 3> kForceUnits = {
+    {{"m/s^2", "_m_s2", 1.0}, {"g", "_g", kStandardGravity}, {"mg", "_mg", 1e-3 * kStandardGravity}}};
 constexpr std::array<Unit, 2> kAngleUnits = {{{"rad", "_rad", 1.0}, {"deg", "_deg", kRadPerDeg}}};
 constexpr const char* kCounts = "counts";
 constexpr std::array<const char*, 6> kSensors = {"gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z"};
@@ -82,7 +85,8 @@ class Table {
       std::string unit;
       const auto chosen = map.find(quantity);
       if (chosen != map.end()) {
-        column.index = chosen->second.name.empty() ? static_cast<std::size_t>(chosen->second.index) : find(chosen->second.name, quantity);
+        column.index = chosen->second.name.empty() ? static_cast<std::size_t>(chosen->second.index)
+                                                   : find(chosen->second.name, quantity);
         unit = chosen->second.unit;
       } else {
         unit = find_by_name(quantity, column.index);
@@ -118,20 +122,24 @@ class Table {
       const bool number = error == std::errc{};
       p = number ? after : p;
       const char* cell_end = p;
-      while (cell_end != end_ && *cell_end != '\n' && *cell_end != '\r' && *cell_end != (separator_ == ' ' ? '\t' : separator_) &&
-             (separator_ != ' ' || *cell_end != ' ')) {
+      while (cell_end != end_ && *cell_end != '\n' && *cell_end != '\r' &&
+             *cell_end != (separator_ == ' ' ? '\t' : separator_) && (separator_ != ' ' || *cell_end != ' ')) {
         ++cell_end;
       }
-      if (!number || std::string_view(p, static_cast<std::size_t>(cell_end - p)).find_first_not_of(" \t") != std::string_view::npos) {
+      if (!number || std::string_view(p, static_cast<std::size_t>(cell_end - p)).find_first_not_of(" \t") !=
+                         std::string_view::npos) {
         if (const Column* column = column_at(found)) {
-          throw input_error(path_, line_, column->quantity, "should be a number, is '" + std::string(number ? from : p, cell_end) + "'");
+          throw input_error(path_, line_, column->quantity,
+                            "should be a number, is '" + std::string(number ? from : p, cell_end) + "'");
         }
       }
       p = cell_end;
       if (p != end_ && *p == separator_ && separator_ != ' ') ++p;
     }
     if (found <= last_) {
-      throw input_error(path_, line_, "", "row too short: " + std::to_string(found) + " columns, " + std::to_string(last_ + 1) + " needed");
+      throw input_error(
+          path_, line_, "",
+          "row too short: " + std::to_string(found) + " columns, " + std::to_string(last_ + 1) + " needed");
     }
     for (std::size_t i = 0; i < columns_.size(); ++i) {
       const double cell = cells_[columns_[i].index];
@@ -184,7 +192,10 @@ class Table {
   std::size_t find(const std::string& name, const std::string& quantity) const {
     const auto at = std::find(names_.begin(), names_.end(), name);
     if (at == names_.end()) {
-      throw input_error(path_, 1, quantity, "no column '" + name + "'" + (names_.empty() ? ": the file has no header" : "; nearest is '" + nearest(name, names_) + "'"));
+      throw input_error(
+          path_, 1, quantity,
+          "no column '" + name + "'" +
+              (names_.empty() ? ": the file has no header" : "; nearest is '" + nearest(name, names_) + "'"));
     }
     return static_cast<std::size_t>(at - names_.begin());
   }
@@ -208,7 +219,9 @@ class Table {
       }
     }
     for (const std::string& name : names_) {
-      if (name == quantity) throw input_error(path_, 1, name, "the header has no unit: name it one of " + wanted + ", or map it under columns");
+      if (name == quantity)
+        throw input_error(path_, 1, name,
+                          "the header has no unit: name it one of " + wanted + ", or map it under columns");
     }
     throw input_error(path_, 1, quantity, "no such column: name it one of " + wanted + ", or map it under columns");
   }
@@ -234,7 +247,8 @@ std::int64_t to_utime(double t, const Table& table) {
 }  // namespace
 
 bool is_quantity(const std::string& name) {
-  return name == "t" || name == "azimuth" || name == "pitch" || std::find(kSensors.begin(), kSensors.end(), name) != kSensors.end();
+  return name == "t" || name == "azimuth" || name == "pitch" ||
+         std::find(kSensors.begin(), kSensors.end(), name) != kSensors.end();
 }
 
 bool unit_fits(const std::string& quantity, const std::string& unit, std::string& expected) {
@@ -252,7 +266,8 @@ bool unit_fits(const std::string& quantity, const std::string& unit, std::string
   return fits;
 }
 
-void read_imu_csv(const std::string& path, const ColumnMap& columns, const SensorSheet& sheet, SampleSink& sink, std::string& digest) {
+void read_imu_csv(const std::string& path, const ColumnMap& columns, const SensorSheet& sheet, SampleSink& sink,
+                  std::string& digest) {
   Table table(path, digest);
   std::vector<std::string> quantities = {"t"};
   quantities.insert(quantities.end(), kSensors.begin(), kSensors.end());
@@ -263,8 +278,8 @@ void read_imu_csv(const std::string& path, const ColumnMap& columns, const Senso
   }
 }
 
-void read_split_csv(const std::string& gyro_path, const std::string& accel_path, const ColumnMap& columns, const SensorSheet& sheet, SampleSink& sink,
-                    std::string& gyro_digest, std::string& accel_digest) {
+void read_split_csv(const std::string& gyro_path, const std::string& accel_path, const ColumnMap& columns,
+                    const SensorSheet& sheet, SampleSink& sink, std::string& gyro_digest, std::string& accel_digest) {
   Table gyro(gyro_path, gyro_digest);
   Table accel(accel_path, accel_digest);
   ColumnMap map = columns;
@@ -288,7 +303,8 @@ void read_split_csv(const std::string& gyro_path, const std::string& accel_path,
       throw input_error(longer.path(), longer.line(), "", "has more rows than " + (more_gyro ? accel : gyro).path());
     }
     if (!more_gyro) return;
-    if (std::abs(g[0] - a[0]) > 1e-4) throw input_error(accel_path, accel.line(), "t", "is not the stamp of the same row in " + gyro_path);
+    if (std::abs(g[0] - a[0]) > 1e-4)
+      throw input_error(accel_path, accel.line(), "t", "is not the stamp of the same row in " + gyro_path);
     sink.imu(to_utime(g[0], gyro), {Vec3<double>(g[1], g[2], g[3]), Vec3<double>(a[1], a[2], a[3])});
   }
 }
@@ -305,7 +321,9 @@ void read_encoder_csv(const std::string& path, const ColumnMap& columns, SampleS
   while (table.row(v.data())) sink.encoder(to_utime(v[0], table), v[1], v[2]);
 }
 
-std::string imu_csv_header() { return "t_s,gyro_x_rad_s,gyro_y_rad_s,gyro_z_rad_s,accel_x_m_s2,accel_y_m_s2,accel_z_m_s2\n"; }
+std::string imu_csv_header() {
+  return "t_s,gyro_x_rad_s,gyro_y_rad_s,gyro_z_rad_s,accel_x_m_s2,accel_y_m_s2,accel_z_m_s2\n";
+}
 
 void append_imu_csv(double t, const InertialSample<double>& sample, std::string& out) {
   std::array<char, 32> text{};

@@ -13,7 +13,8 @@ Error input_error(const std::string& file, long long line, const std::string& fi
 }
 
 Error input_error_at_byte(const std::string& file, long long byte, const std::string& field, const std::string& what) {
-  return {ExitCode::kInput, file + ": byte " + std::to_string(byte) + (field.empty() ? "" : ": " + field) + ": " + what};
+  return {ExitCode::kInput,
+          file + ": byte " + std::to_string(byte) + (field.empty() ? "" : ": " + field) + ": " + what};
 }
 
 }  // namespace trunnion::io

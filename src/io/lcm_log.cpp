@@ -24,7 +24,8 @@ constexpr std::size_t kBlock = std::size_t{1} << 18U;  // stays in the cache
 
 }  // namespace
 
-LcmLogReader::LcmLogReader(std::string path, Sha256* digest) : path_(std::move(path)), digest_(digest), buffer_(2 * kBlock) {
+LcmLogReader::LcmLogReader(std::string path, Sha256* digest)
+    : path_(std::move(path)), digest_(digest), buffer_(2 * kBlock) {
   descriptor_ = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC);
   if (descriptor_ < 0) throw input_error(path_, 0, "", std::string("cannot read: ") + std::strerror(errno));
   struct stat status {};
@@ -50,7 +51,9 @@ bool LcmLogReader::have(std::size_t bytes) {
     }
     const ssize_t got = ::read(descriptor_, buffer_.data() + end_, std::min(kBlock, buffer_.size() - end_));
     if (got < 0 && errno == EINTR) continue;
-    if (got < 0) throw input_error_at_byte(path_, offset_ + static_cast<std::int64_t>(end_), "", std::string("cannot read: ") + std::strerror(errno));
+    if (got < 0)
+      throw input_error_at_byte(path_, offset_ + static_cast<std::int64_t>(end_), "",
+                                std::string("cannot read: ") + std::strerror(errno));
     if (got == 0) {
       at_end_ = true;
     } else {
@@ -77,7 +80,8 @@ bool LcmLogReader::skip_damage() {
   while (have(kHeader)) {
     const char* from = buffer_.data() + begin_;
     const char* last = buffer_.data() + end_ - kHeader;  // the last place where a whole header fits
-    const auto* hit = static_cast<const char*>(std::memchr(from, kFirstByte, static_cast<std::size_t>(last - from) + 1));
+    const auto* hit =
+        static_cast<const char*>(std::memchr(from, kFirstByte, static_cast<std::size_t>(last - from) + 1));
     const char* stop = hit != nullptr ? hit : last + 1;
     lost_bytes_ += stop - from;
     begin_ += static_cast<std::size_t>(stop - from);

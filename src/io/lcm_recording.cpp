@@ -19,8 +19,8 @@ constexpr std::size_t kBatchHead = 8 + 8 + 8 + 4;
 constexpr std::size_t kBatchSample = 7 * 8;
 constexpr long long kEventsPerProgress = 100000;
 constexpr double kTolerableDamage = 1e-3;  // messages that cannot be decoded, against those that can
-constexpr double kLargestReading = 1e6;  // rad/s, m/s^2
-constexpr double kLargestAngle = 1e7;    // rad
+constexpr double kLargestReading = 1e6;    // rad/s, m/s^2
+constexpr double kLargestAngle = 1e7;      // rad
 
 std::string hexadecimal(std::uint64_t v) {
   char text[24];
@@ -43,8 +43,9 @@ std::int64_t LcmDecoder::imu(const LcmEvent& event) {
   } else if (fingerprint == kImuBatchFingerprint && event.data.size() >= kBatchHead) {
     batch(event);
   } else {
-    damage(event, foreign(event, fingerprint, "trunnion_lcm.imu_t (" + hexadecimal(kImuFingerprint) + ") or trunnion_lcm.imu_batch_t (" +
-                                                  hexadecimal(kImuBatchFingerprint) + ")"));
+    damage(event, foreign(event, fingerprint,
+                          "trunnion_lcm.imu_t (" + hexadecimal(kImuFingerprint) + ") or trunnion_lcm.imu_batch_t (" +
+                              hexadecimal(kImuBatchFingerprint) + ")"));
     return 0;
   }
   return load_i64(p + 16);
@@ -54,11 +55,13 @@ void LcmDecoder::encoder(const LcmEvent& event) {
   const char* p = event.data.data();
   const std::uint64_t fingerprint = event.data.size() >= 8 ? load_u64(p) : 0;
   if (fingerprint != kEncoderFingerprint || event.data.size() < kEncoderHead) {
-    return damage(event, foreign(event, fingerprint, "trunnion_lcm.encoder_t (" + hexadecimal(kEncoderFingerprint) + ")"));
+    return damage(event,
+                  foreign(event, fingerprint, "trunnion_lcm.encoder_t (" + hexadecimal(kEncoderFingerprint) + ")"));
   }
   const auto axes = static_cast<std::int32_t>(load_u32(p + 24));
   if (axes != 2 || event.data.size() != kEncoderHead + 16) {
-    return damage(event, input_error_at_byte(path_, event.byte, "num_axes", "is " + std::to_string(axes) + ", a two-axis table has 2"));
+    return damage(event, input_error_at_byte(path_, event.byte, "num_axes",
+                                             "is " + std::to_string(axes) + ", a two-axis table has 2"));
   }
   const double azimuth = load_double(p + kEncoderHead);
   const double pitch = load_double(p + kEncoderHead + 8);
@@ -74,10 +77,11 @@ void LcmDecoder::encoder(const LcmEvent& event) {
 
 void LcmDecoder::deliver(const LcmEvent& event, std::int64_t utime, const InertialSample<double>& sample) {
   for (int i = 0; i < 3; ++i) {
-    for (const auto& [value, field] : {std::pair{sample.w(i), "angular_rate["}, std::pair{sample.f(i), "specific_force["}}) {
+    for (const auto& [value, field] :
+         {std::pair{sample.w(i), "angular_rate["}, std::pair{sample.f(i), "specific_force["}}) {
       if (std::abs(value) < kLargestReading) continue;
-      const Error fault =
-          input_error_at_byte(path_, event.byte, field + std::to_string(i) + "]", std::isfinite(value) ? "is beyond any sensor" : "is not finite");
+      const Error fault = input_error_at_byte(path_, event.byte, field + std::to_string(i) + "]",
+                                              std::isfinite(value) ? "is beyond any sensor" : "is not finite");
       if (!std::isfinite(value)) throw fault;
       return damage(event, fault);
     }
@@ -90,7 +94,8 @@ void LcmDecoder::batch(const LcmEvent& event) {
   const char* p = event.data.data();
   const std::uint64_t n = load_u32(p + 24);
   if (event.data.size() != kBatchHead + kBatchSample * n + 8) {
-    return damage(event, input_error_at_byte(path_, event.byte, "num_samples", "does not fit the length of the message"));
+    return damage(event,
+                  input_error_at_byte(path_, event.byte, "num_samples", "does not fit the length of the message"));
   }
   const char* utime = p + kBatchHead;
   for (std::uint64_t k = 0; k < n; ++k) {
@@ -116,12 +121,12 @@ void LcmDecoder::finish() const {
 
 Error LcmDecoder::foreign(const LcmEvent& event, std::uint64_t fingerprint, const std::string& expected) const {
   return input_error_at_byte(path_, event.byte, "channel " + std::string(event.channel),
-                             "holds a message of another type, fingerprint " + hexadecimal(fingerprint) + ", " + std::to_string(event.data.size()) +
-                                 " bytes; expected " + expected);
+                             "holds a message of another type, fingerprint " + hexadecimal(fingerprint) + ", " +
+                                 std::to_string(event.data.size()) + " bytes; expected " + expected);
 }
 
-LcmLosses read_lcm_recording(const std::string& path, const LcmChannels& channels, bool need_encoder, SampleSink& sink, Sha256* digest,
-                             const Progress& progress) {
+LcmLosses read_lcm_recording(const std::string& path, const LcmChannels& channels, bool need_encoder, SampleSink& sink,
+                             Sha256* digest, const Progress& progress) {
   LcmLogReader log(path, digest);
   LcmDecoder decoder(path, sink);
   LcmEvent event;
@@ -132,12 +137,14 @@ LcmLosses read_lcm_recording(const std::string& path, const LcmChannels& channel
     } else if (event.channel == channels.encoder) {
       decoder.encoder(event);
     }
-    if (progress && ++events % kEventsPerProgress == 0) progress(static_cast<double>(event.byte) / static_cast<double>(log.size()));
+    if (progress && ++events % kEventsPerProgress == 0)
+      progress(static_cast<double>(event.byte) / static_cast<double>(log.size()));
   }
   decoder.finish();
   if (decoder.samples() == 0) {
-    throw input_error(path, 0, "", "no usable message on the IMU channel '" + channels.imu + "'" +
-                                       (log.lost_bytes() > 0 ? "; " + std::to_string(log.lost_bytes()) + " bytes are damaged" : ""));
+    throw input_error(path, 0, "",
+                      "no usable message on the IMU channel '" + channels.imu + "'" +
+                          (log.lost_bytes() > 0 ? "; " + std::to_string(log.lost_bytes()) + " bytes are damaged" : ""));
   }
   if (need_encoder && decoder.encoders() == 0) {
     throw input_error(path, 0, "", "no usable message on the encoder channel '" + channels.encoder + "'");

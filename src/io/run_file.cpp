@@ -29,7 +29,8 @@ std::size_t entry_index(const StrictYaml& map, const std::string& key) {
 ColumnMap read_columns(const StrictYaml& node) {
   ColumnMap columns;
   for (const std::string& quantity : node.keys()) {
-    if (!is_quantity(quantity)) node.only({"t", "gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z", "azimuth", "pitch"});
+    if (!is_quantity(quantity))
+      node.only({"t", "gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z", "azimuth", "pitch"});
     const StrictYaml entry = node.at(quantity);
     entry.only({"column", "unit"});
     ColumnChoice choice;
@@ -44,7 +45,8 @@ ColumnMap read_columns(const StrictYaml& node) {
     }
     choice.unit = entry.at("unit").text();
     std::string expected;
-    if (!unit_fits(quantity, choice.unit, expected)) entry.at("unit").fail("'" + choice.unit + "' does not measure " + quantity + ": one of " + expected);
+    if (!unit_fits(quantity, choice.unit, expected))
+      entry.at("unit").fail("'" + choice.unit + "' does not measure " + quantity + ": one of " + expected);
     columns[quantity] = choice;
   }
   return columns;
@@ -74,7 +76,8 @@ RecordingFiles read_files(const StrictYaml& node, const std::string& run, bool h
 
 RunFile read_run_file(const std::string& path) {
   const StrictYaml root = StrictYaml::load(path);
-  root.only({"format", "site", "rig", "axes", "sheet", "serial", "clock", "bias", "model", "refuse_above", "recordings", "limits", "channels", "columns"});
+  root.only({"format", "site", "rig", "axes", "sheet", "serial", "clock", "bias", "model", "refuse_above", "recordings",
+             "limits", "channels", "columns"});
   if (root.at("format").text() != "trunnion-run/1") root.at("format").fail("should be trunnion-run/1");
   RunFile run;
   run.path = path;
@@ -83,7 +86,8 @@ RunFile read_run_file(const std::string& path) {
   site.only({"latitude_deg", "height_m", "gravity_m_s2", "gravity_sigma_m_s2"});
   run.site.latitude = site.at("latitude_deg").number_in(-90.0, 90.0) * kRadPerDeg;
   const double height = site.has("height_m") ? site.at("height_m").number_in(-500.0, 10000.0) : 0.0;
-  run.site.gravity = site.has("gravity_m_s2") ? site.at("gravity_m_s2").number_in(9.7, 9.9) : normal_gravity(run.site.latitude, height);
+  run.site.gravity = site.has("gravity_m_s2") ? site.at("gravity_m_s2").number_in(9.7, 9.9)
+                                              : normal_gravity(run.site.latitude, height);
   if (site.has("gravity_sigma_m_s2")) run.site.gravity_sigma = site.at("gravity_sigma_m_s2").positive();
 
   if (root.has("rig")) run.rig = beside(path, root.at("rig").text());
@@ -113,8 +117,13 @@ RunFile read_run_file(const std::string& path) {
     const StrictYaml model = root.at("model");
     for (std::size_t i = 0; i < model.length(); ++i) {
       const std::string term = model.at(i).text();
-      bool* const chosen = term == "cubic" ? &run.cubic : term == "g_sensitivity" ? &run.g_sensitivity : term == "quadratic" ? &run.quadratic : nullptr;
-      if (chosen == nullptr) model.at(i).fail("unknown term '" + term + "'; did you mean '" + nearest(term, {"cubic", "g_sensitivity", "quadratic"}) + "'?");
+      bool* const chosen = term == "cubic"           ? &run.cubic
+                           : term == "g_sensitivity" ? &run.g_sensitivity
+                           : term == "quadratic"     ? &run.quadratic
+                                                     : nullptr;
+      if (chosen == nullptr)
+        model.at(i).fail("unknown term '" + term + "'; did you mean '" +
+                         nearest(term, {"cubic", "g_sensitivity", "quadratic"}) + "'?");
       *chosen = true;
     }
   }
@@ -143,12 +152,13 @@ RunFile read_run_file(const std::string& path) {
 
   const StrictYaml recordings = root.at("recordings");
   if (recordings.length() == 0) recordings.fail("is empty");
-  for (std::size_t i = 0; i < recordings.length(); ++i) run.recordings.push_back(read_files(recordings.at(i), path, !run.rig.empty()));
+  for (std::size_t i = 0; i < recordings.length(); ++i)
+    run.recordings.push_back(read_files(recordings.at(i), path, !run.rig.empty()));
   return run;
 }
 
-LcmLosses read_recording(const RunFile& run, const RecordingFiles& files, SampleSink& sink, std::vector<std::pair<std::string, std::string>>& inputs,
-                         const Progress& progress) {
+LcmLosses read_recording(const RunFile& run, const RecordingFiles& files, SampleSink& sink,
+                         std::vector<std::pair<std::string, std::string>>& inputs, const Progress& progress) {
   if (!files.lcm.empty()) {
     Sha256 digest;
     const LcmLosses losses = read_lcm_recording(files.lcm, run.channels, !files.mount.empty(), sink, &digest, progress);

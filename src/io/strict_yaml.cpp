@@ -109,7 +109,9 @@ StrictYaml StrictYaml::at(const std::string& key) const {
   return {file_, field, child};
 }
 
-StrictYaml StrictYaml::at(std::size_t index) const { return {file_, field_ + "[" + std::to_string(index) + "]", node_[index]}; }
+StrictYaml StrictYaml::at(std::size_t index) const {
+  return {file_, field_ + "[" + std::to_string(index) + "]", node_[index]};
+}
 
 std::size_t StrictYaml::length() const {
   if (!node_.IsSequence()) fail("should be a list");
@@ -141,7 +143,8 @@ bool StrictYaml::is_number() const {
 }
 
 double StrictYaml::number() const {
-  if (!is_number()) fail("should be a number, is '" + (node_.IsScalar() ? node_.Scalar() : std::string("not one")) + "'");
+  if (!is_number())
+    fail("should be a number, is '" + (node_.IsScalar() ? node_.Scalar() : std::string("not one")) + "'");
   const std::string& word = node_.Scalar();
   double value = 0.0;
   std::from_chars(word.data() + (word[0] == '+' ? 1 : 0), word.data() + word.size(), value);

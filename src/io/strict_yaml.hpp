@@ -24,13 +24,13 @@ class StrictYaml {
   void only(const std::vector<std::string>& known) const;
 
   [[nodiscard]] bool has(const std::string& key) const;
-  [[nodiscard]] StrictYaml at(const std::string& key) const;      ///< must be there
+  [[nodiscard]] StrictYaml at(const std::string& key) const;  ///< must be there
   [[nodiscard]] StrictYaml at(std::size_t index) const;
-  [[nodiscard]] std::size_t length() const;                        ///< of a sequence
-  [[nodiscard]] std::vector<std::string> keys() const;             ///< of a map
+  [[nodiscard]] std::size_t length() const;             ///< of a sequence
+  [[nodiscard]] std::vector<std::string> keys() const;  ///< of a map
 
   [[nodiscard]] std::string text() const;
-  [[nodiscard]] double number() const;                             ///< finite
+  [[nodiscard]] double number() const;  ///< finite
   [[nodiscard]] double number_in(double lowest, double highest) const;
   [[nodiscard]] double positive() const;
   [[nodiscard]] long long integer() const;
@@ -38,16 +38,19 @@ class StrictYaml {
   [[nodiscard]] bool is_sequence() const { return node_.IsSequence(); }
   [[nodiscard]] bool is_null() const { return node_.IsNull(); }
   [[nodiscard]] bool is_number() const;
-  [[nodiscard]] Vec3<double> vector() const;                       ///< a null entry reads as zero
+  [[nodiscard]] Vec3<double> vector() const;  ///< a null entry reads as zero
   [[nodiscard]] Mat3<double> matrix() const;
 
-  [[nodiscard]] double number_or(const std::string& key, double otherwise) const { return has(key) ? at(key).number() : otherwise; }
+  [[nodiscard]] double number_or(const std::string& key, double otherwise) const {
+    return has(key) ? at(key).number() : otherwise;
+  }
 
   /// Throws the fault of this node.
   [[noreturn]] void fail(const std::string& what) const;
 
  private:
-  StrictYaml(std::string file, std::string field, YAML::Node node) : file_(std::move(file)), field_(std::move(field)), node_(std::move(node)) {}
+  StrictYaml(std::string file, std::string field, YAML::Node node)
+      : file_(std::move(file)), field_(std::move(field)), node_(std::move(node)) {}
   std::string file_;
   std::string field_;
   YAML::Node node_;

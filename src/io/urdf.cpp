@@ -70,42 +70,51 @@ Vec3<double> axis_of(const std::string& path, const urdf::Joint& joint) {
   const Vec3<double> axis = vector(joint.axis);
   if (!axis.allFinite() || axis.norm() < 1e-9) throw input_error(path, 0, field, "has a zero axis");
   if (joint.limits && joint.type == urdf::Joint::REVOLUTE) {
-    if (!std::isfinite(joint.limits->lower) || !std::isfinite(joint.limits->upper)) throw input_error(path, 0, field, "limits are not finite");
+    if (!std::isfinite(joint.limits->lower) || !std::isfinite(joint.limits->upper))
+      throw input_error(path, 0, field, "limits are not finite");
     if (joint.limits->lower > joint.limits->upper) throw input_error(path, 0, field, "lower limit above the upper one");
-    if (joint.limits->lower == joint.limits->upper) throw input_error(path, 0, field, "limits leave it no room to turn");
+    if (joint.limits->lower == joint.limits->upper)
+      throw input_error(path, 0, field, "limits leave it no room to turn");
   }
   return axis.normalized();
 }
 
 }  // namespace
 
-RigFile read_rig(const std::string& path, const std::string& outer_axis, const std::string& inner_axis, const std::vector<std::string>& wanted) {
+RigFile read_rig(const std::string& path, const std::string& outer_axis, const std::string& inner_axis,
+                 const std::vector<std::string>& wanted) {
   const std::string text = read_whole(path, kLargestUrdf);
   if (too_deep(text)) throw input_error(path, 0, "", "is nested too deep");
   Capture capture;
   const urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(text);
-  if (!model) throw input_error(path, 0, "", "not a usable URDF" + (capture.text().empty() ? std::string() : ": " + capture.text()));
+  if (!model)
+    throw input_error(path, 0, "",
+                      "not a usable URDF" + (capture.text().empty() ? std::string() : ": " + capture.text()));
   if (count(text, "<robot") > 1) throw input_error(path, 0, "robot", "stands more than once");
 
   std::set<std::string> children;
   for (const auto& [name, joint] : model->joints_) {
     if (!children.insert(joint->child_link_name).second) {
-      throw input_error(path, 0, "link '" + joint->child_link_name + "'", "has two parent joints: the rig should be a tree");
+      throw input_error(path, 0, "link '" + joint->child_link_name + "'",
+                        "has two parent joints: the rig should be a tree");
     }
     const urdf::Pose& origin = joint->parent_to_joint_origin_transform;
-    if (!vector(origin.position).allFinite() || !std::isfinite(origin.rotation.w + origin.rotation.x + origin.rotation.y + origin.rotation.z)) {
+    if (!vector(origin.position).allFinite() ||
+        !std::isfinite(origin.rotation.w + origin.rotation.x + origin.rotation.y + origin.rotation.z)) {
       throw input_error(path, 0, "joint '" + name + "'", "origin is not finite");
     }
   }
   const auto joint_named = [&](const std::string& name) {
     const auto found = model->joints_.find(name);
-    if (found == model->joints_.end()) throw input_error(path, 0, "joint '" + name + "'", "is missing: the rig needs an outer and an inner axis");
+    if (found == model->joints_.end())
+      throw input_error(path, 0, "joint '" + name + "'", "is missing: the rig needs an outer and an inner axis");
     return found->second;
   };
   const auto outer = joint_named(outer_axis);
   const auto inner = joint_named(inner_axis);
 
-  /// Product of the fixed joints from @p link up to @p ancestor. @return false when a moving joint or the root intervenes
+  /// Product of the fixed joints from @p link up to @p ancestor. @return false when a moving joint or the root
+  /// intervenes
   const auto fixed_chain = [&](std::string link, const std::string& ancestor, Mat3<double>& C, Vec3<double>& r) {
     C.setIdentity();
     r.setZero();
@@ -123,7 +132,8 @@ RigFile read_rig(const std::string& path, const std::string& outer_axis, const s
   };
   const auto through = [&](const urdf::Joint& joint, const std::string& from, Mat3<double>& C, Vec3<double>& r) {
     if (!fixed_chain(joint.parent_link_name, from, C, r)) {
-      throw input_error(path, 0, "joint '" + joint.name + "'", "does not hang from link '" + from + "' by fixed joints only");
+      throw input_error(path, 0, "joint '" + joint.name + "'",
+                        "does not hang from link '" + from + "' by fixed joints only");
     }
     r += C * vector(joint.parent_to_joint_origin_transform.position);
     C *= rotation(joint.parent_to_joint_origin_transform.rotation);
@@ -137,8 +147,11 @@ RigFile read_rig(const std::string& path, const std::string& outer_axis, const s
   const Vec3<double> inner_direction = axis_of(path, *inner);
   through(*outer, model->getRoot()->name, C_ta, azimuth_joint_t);
   through(*inner, outer->child_link_name, C_ap, pitch_joint_a);
-  const Result<TwoAxisGeometry> geometry = TwoAxisGeometry::from_chain(C_ta, outer_direction, C_ap, pitch_joint_a, inner_direction);
-  if (!geometry.ok()) throw input_error(path, 0, "joint '" + inner_axis + "'", "is parallel to '" + outer_axis + "': the rig has no two axes");
+  const Result<TwoAxisGeometry> geometry =
+      TwoAxisGeometry::from_chain(C_ta, outer_direction, C_ap, pitch_joint_a, inner_direction);
+  if (!geometry.ok())
+    throw input_error(path, 0, "joint '" + inner_axis + "'",
+                      "is parallel to '" + outer_axis + "': the rig has no two axes");
 
   RigFile file;
   file.rig.geometry = geometry.value();
@@ -152,20 +165,25 @@ RigFile read_rig(const std::string& path, const std::string& outer_axis, const s
     const bool leaf = child != model->links_.end() && child->second->child_joints.empty();
     Mat3<double> C;
     Vec3<double> r;
-    if (joint->type == urdf::Joint::FIXED && leaf && fixed_chain(joint->child_link_name, inner->child_link_name, C, r)) found.push_back(name);
+    if (joint->type == urdf::Joint::FIXED && leaf && fixed_chain(joint->child_link_name, inner->child_link_name, C, r))
+      found.push_back(name);
   }
   std::sort(found.begin(), found.end());
   file.mounts = wanted.empty() ? found : wanted;
-  if (file.mounts.empty()) throw input_error(path, 0, "", "has no mount: a fixed joint from the pitch stage to the unit's case");
-  if (file.mounts.size() > kMaxMounts) throw input_error(path, 0, "", "has more than " + std::to_string(kMaxMounts) + " mounts");
+  if (file.mounts.empty())
+    throw input_error(path, 0, "", "has no mount: a fixed joint from the pitch stage to the unit's case");
+  if (file.mounts.size() > kMaxMounts)
+    throw input_error(path, 0, "", "has more than " + std::to_string(kMaxMounts) + " mounts");
   for (std::size_t m = 0; m < file.mounts.size(); ++m) {
     const std::string& name = file.mounts[m];
     if (std::find(found.begin(), found.end(), name) == found.end()) {
       std::string known;
       for (const std::string& one : found) known += (known.empty() ? "" : ", ") + one;
-      throw input_error(path, 0, "mount '" + name + "'", "is no fixed joint of the pitch stage that ends in the unit's case; the rig has: " + known);
+      throw input_error(path, 0, "mount '" + name + "'",
+                        "is no fixed joint of the pitch stage that ends in the unit's case; the rig has: " + known);
     }
-    fixed_chain(model->joints_.at(name)->child_link_name, inner->child_link_name, file.rig.mount[m].C_pb, file.rig.mount[m].lever_p);
+    fixed_chain(model->joints_.at(name)->child_link_name, inner->child_link_name, file.rig.mount[m].C_pb,
+                file.rig.mount[m].lever_p);
   }
   file.rig.mounts = static_cast<int>(file.mounts.size());
   return file;

@@ -25,7 +25,8 @@ Error failed(const std::string& path, const char* doing) {
 
 }  // namespace
 
-WholeFile::WholeFile(std::string path) : path_(std::move(path)), temporary_(path_ + ".part-" + std::to_string(::getpid())) {
+WholeFile::WholeFile(std::string path)
+    : path_(std::move(path)), temporary_(path_ + ".part-" + std::to_string(::getpid())) {
   struct stat status {};
   if (::stat(path_.c_str(), &status) == 0 && S_ISDIR(status.st_mode)) {
     throw input_error(path_, 0, "", "is a folder, not a file to write");
@@ -78,10 +79,12 @@ std::string read_whole(const std::string& path, std::size_t most) {
   if (descriptor < 0) throw failed(path, "read");
   std::string text;
   struct stat status {};
-  if (::fstat(descriptor, &status) == 0 && status.st_size > 0) text.reserve(static_cast<std::size_t>(status.st_size) + 1);
+  if (::fstat(descriptor, &status) == 0 && status.st_size > 0)
+    text.reserve(static_cast<std::size_t>(status.st_size) + 1);
   std::string block(kBlock, '\0');
   ssize_t got = 0;
-  while ((got = ::read(descriptor, block.data(), block.size())) > 0 && text.size() <= most) text.append(block.data(), static_cast<std::size_t>(got));
+  while ((got = ::read(descriptor, block.data(), block.size())) > 0 && text.size() <= most)
+    text.append(block.data(), static_cast<std::size_t>(got));
   if (got < 0) {
     const Error error = failed(path, "read");
     ::close(descriptor);

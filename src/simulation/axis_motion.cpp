@@ -44,7 +44,8 @@ void AxisCourse::oscillate(double from, double to, double amplitude, double freq
 
 double AxisCourse::angle(double t) const {
   double angle = angle_;
-  const auto after = std::upper_bound(ramps_.begin(), ramps_.end(), t, [](double time, const Ramp& ramp) { return time < ramp.t; });
+  const auto after =
+      std::upper_bound(ramps_.begin(), ramps_.end(), t, [](double time, const Ramp& ramp) { return time < ramp.t; });
   if (after != ramps_.begin()) {
     const Ramp& ramp = *(after - 1);
     const double elapsed = t - ramp.t;

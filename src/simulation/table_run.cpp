@@ -56,14 +56,16 @@ class TrueTable {
     const Quaternion<double> tilt = quaternion_exp<double>(Vec3<double>(truth.rig.tilt_x, truth.rig.tilt_y, 0.0));
     const Quaternion<double> heading = quaternion_exp<double>(Vec3<double>(0.0, 0.0, truth.rig.heading));
     q_uo_ = tilt * heading * Quaternion<double>(rig.geometry.C_to);
-    q_axes_ = quaternion_exp<double>(Vec3<double>(rig.geometry.nonorthogonality + truth.rig.nonorthogonality, 0.0, 0.0));
+    q_axes_ =
+        quaternion_exp<double>(Vec3<double>(rig.geometry.nonorthogonality + truth.rig.nonorthogonality, 0.0, 0.0));
   }
 
   [[nodiscard]] Pose at(double t) const {
     const double azimuth = motion_.azimuth.angle(t);
     const double pitch = motion_.pitch.angle(t);
     const Quaternion<double> q_ui_turned = quaternion_exp<double>(w_ie_u_ * t);
-    const Quaternion<double> q_io = q_ui_turned * q_uo_ * Quaternion<double>(std::cos(0.5 * azimuth), 0.0, 0.0, std::sin(0.5 * azimuth));
+    const Quaternion<double> q_io =
+        q_ui_turned * q_uo_ * Quaternion<double>(std::cos(0.5 * azimuth), 0.0, 0.0, std::sin(0.5 * azimuth));
     Pose pose;
     pose.q_ip = q_io * q_axes_ * Quaternion<double>(std::cos(0.5 * pitch), 0.0, std::sin(0.5 * pitch), 0.0) * q_qp_;
     pose.r_i = q_io * joint_o_ + pose.q_ip * lever_p_;
@@ -209,8 +211,8 @@ TableMotion rest_only(double lowest, double highest) {
   return {AxisCourse(0.0), AxisCourse(0.5 * (lowest + highest)), 60.0};
 }
 
-void run_table(const TableRunSettings& s, const CalibrationValues& truth, const Rig& rig, const Site& site, const TableMotion& motion, int mount,
-               int index, const TableSinks& sinks) {
+void run_table(const TableRunSettings& s, const CalibrationValues& truth, const Rig& rig, const Site& site,
+               const TableMotion& motion, int mount, int index, const TableSinks& sinks) {
   const auto id = static_cast<std::uint64_t>(index);
   Gaussian white(s.seed, kWhite + id);
   Gaussian wandering(s.seed, kWander + id);
@@ -226,8 +228,9 @@ void run_table(const TableRunSettings& s, const CalibrationValues& truth, const 
   const auto& bias = truth.recording_bias[static_cast<std::size_t>(index)];
 
   const TrueTable table(truth, rig, site, motion, mount);
-  const Mat3<double> C_bp =
-      (rig.mount[static_cast<std::size_t>(mount)].C_pb * rotation_exp<double>(truth.mount_error[static_cast<std::size_t>(mount)])).transpose();
+  const Mat3<double> C_bp = (rig.mount[static_cast<std::size_t>(mount)].C_pb *
+                             rotation_exp<double>(truth.mount_error[static_cast<std::size_t>(mount)]))
+                                .transpose();
   InertialUnit<double> unit = truth.unit;
   unit.gyro.bias = bias.w;
   unit.accel.bias = bias.f;
@@ -237,8 +240,10 @@ void run_table(const TableRunSettings& s, const CalibrationValues& truth, const 
   const double encoder_period = 1.0 / s.encoder_rate;
   long long encoder_index = 0;
   const auto publish_encoder = [&](double until) {
-    for (double t = static_cast<double>(encoder_index) * encoder_period; t <= until; t = static_cast<double>(++encoder_index) * encoder_period) {
-      const double azimuth = quantised(truth.rig.eccentricity[kAzimuth].distort(motion.azimuth.angle(t)), encoder_quantum);
+    for (double t = static_cast<double>(encoder_index) * encoder_period; t <= until;
+         t = static_cast<double>(++encoder_index) * encoder_period) {
+      const double azimuth =
+          quantised(truth.rig.eccentricity[kAzimuth].distort(motion.azimuth.angle(t)), encoder_quantum);
       const double pitch = quantised(truth.rig.eccentricity[kPitch].distort(motion.pitch.angle(t)), encoder_quantum);
       sinks.encoder(utime_of(t), encoder_index, azimuth - 2.0 * kPi * std::floor(azimuth / (2.0 * kPi)), pitch);
     }

@@ -32,7 +32,8 @@ const std::vector<std::string>& logs() {
       made.push_back(folder / ("position_" + std::to_string(m + 1) + ".lcm"));
       io::LcmLogWriter log(made.back());
       std::string message;
-      simulation::run_table(settings, truth, rig, site, simulation::experiment(-10.0 * kRadPerDeg, 70.0 * kRadPerDeg, m), m, m,
+      simulation::run_table(settings, truth, rig, site,
+                            simulation::experiment(-10.0 * kRadPerDeg, 70.0 * kRadPerDeg, m), m, m,
                             {[&](std::int64_t t, std::int64_t n, const InertialSample<double>& s) {
                                io::encode_imu(t, n, s, message);
                                log.write(t, "IMU", message);
@@ -116,10 +117,12 @@ void WeSolveTheThreeLogs(benchmark::State& state) {
   long long samples = 0;
   for (auto _ : state) {
     std::vector<calibration::TableRecording> recordings;
-    for (const std::string& path : logs()) recordings.push_back({compress(path, nullptr), static_cast<int>(recordings.size())});
+    for (const std::string& path : logs())
+      recordings.push_back({compress(path, nullptr), static_cast<int>(recordings.size())});
     calibration::TableSolveOptions options;
     options.noise = simulation::TableRunSettings().noise;
-    const calibration::Solution solution = calibration::solve_table(recordings, calibration::cyclic_rig(), calibration::bench(), options);
+    const calibration::Solution solution =
+        calibration::solve_table(recordings, calibration::cyclic_rig(), calibration::bench(), options);
     samples += solution.record.fit.samples;
   }
   state.SetItemsProcessed(samples);

@@ -35,7 +35,8 @@ Site bench() {
 /// A unit turned by hand: rests of four seconds and smooth turns of two, in n-frame attitude.
 class Hand {
  public:
-  Hand(const InertialUnit<double>& unit, std::uint64_t seed, double noise) : unit_(unit), gaussian_(seed, 9), noise_(noise), parts_("hand") {}
+  Hand(const InertialUnit<double>& unit, std::uint64_t seed, double noise)
+      : unit_(unit), gaussian_(seed, 9), noise_(noise), parts_("hand") {}
 
   void rest(double seconds) { turn(Vec3<double>::Zero(), seconds); }
 
@@ -53,7 +54,8 @@ class Hand {
         const double u1 = u0 + 0.25 / steps;
         const Quaternion<double> q0 = start * quaternion_exp<double>(angle * smooth(u0));
         const Quaternion<double> q1 = start * quaternion_exp<double>(angle * smooth(u1));
-        input.w += kRate * quaternion_log<double>(Quaternion<double>(q0.conjugate() * q1)) + 0.25 * (q0.conjugate() * w_ie_u);
+        input.w +=
+            kRate * quaternion_log<double>(Quaternion<double>(q0.conjugate() * q1)) + 0.25 * (q0.conjugate() * w_ie_u);
         input.f += 0.25 * (q0.conjugate() * Vec3<double>(0.0, 0.0, bench().gravity));
       }
       InertialSample<double> reading = unit_.distort(input);
@@ -154,8 +156,11 @@ TEST(SolveByHand, FindsTheUnitWithinItsSigmas) {
 TEST(SolveByHand, TwelveAlignedRestsWithoutTurnsAreRefusedByName) {
   Hand hand(true_unit(), 5, 1.0);
   for (int face = 0; face < 12; ++face) {
-    const Vec3<double> axis = face % 3 == 0 ? Vec3<double>::UnitX() : face % 3 == 1 ? Vec3<double>::UnitY() : Vec3<double>::UnitZ();
-    const Quaternion<double> q = quaternion_exp<double>(axis * (0.5 * kPi * (face / 3 + 1))) * quaternion_exp<double>(Vec3<double>(0.5 * kPi * (face % 2), 0, 0));
+    const Vec3<double> axis = face % 3 == 0   ? Vec3<double>::UnitX()
+                              : face % 3 == 1 ? Vec3<double>::UnitY()
+                                              : Vec3<double>::UnitZ();
+    const Quaternion<double> q = quaternion_exp<double>(axis * (0.5 * kPi * (face / 3 + 1))) *
+                                 quaternion_exp<double>(Vec3<double>(0.5 * kPi * (face % 2), 0, 0));
     hand.lift_to(q);
     hand.rest(5.0);
   }
@@ -177,7 +182,8 @@ TEST(SolveByHand, AScaleTurnedOnlyAboutTheVerticalIsRefusedByName) {
     hand.turn(Vec3<double>(0.0, 0.0, 1.5), 2.0);
     hand.rest(4.0);
   }
-  const std::string text = describe(solve_by_hand({hand.finish()}, bench(), options_without_cubic()).solution.observability);
+  const std::string text =
+      describe(solve_by_hand({hand.finish()}, bench(), options_without_cubic()).solution.observability);
   EXPECT_THAT(text, HasSubstr("gyro z scale"));
 }
 
@@ -195,7 +201,8 @@ TEST(SolveByHand, RefusesAWrongUnitOfTheAccelerometers) {
   }
 }
 
-// ---- a real recording: Xsens MTi, raw counts, 38 poses, and what a published tool made of it -------------------------
+// ---- a real recording: Xsens MTi, raw counts, 38 poses, and what a published tool made of it
+// -------------------------
 
 class ToParts final : public io::SampleSink {
  public:
@@ -211,7 +218,8 @@ class ImuTk : public testing::Test {
  protected:
   void SetUp() override {
     const std::filesystem::path folder = std::filesystem::path(TRUNNION_DATA) / "imu_tk";
-    if (!std::filesystem::exists(folder / "xsens_gyro.mat")) GTEST_SKIP() << "no real recordings: " << folder << " is absent";
+    if (!std::filesystem::exists(folder / "xsens_gyro.mat"))
+      GTEST_SKIP() << "no real recordings: " << folder << " is absent";
     io::SensorSheet sheet;
     sheet.gyro_counts = {4770.0, 32768.0};
     sheet.accel_counts = {414.0, 32768.0};
@@ -219,7 +227,8 @@ class ImuTk : public testing::Test {
     ToParts sink(parts);
     std::string a;
     std::string b;
-    io::read_split_csv((folder / "xsens_gyro.mat").string(), (folder / "xsens_acc.mat").string(), {}, sheet, sink, a, b);
+    io::read_split_csv((folder / "xsens_gyro.mat").string(), (folder / "xsens_acc.mat").string(), {}, sheet, sink, a,
+                       b);
     recording_ = parts.finish(0.0, 0.0);
     site_.latitude = 45.4 * kRadPerDeg;  // Padova
     site_.gravity = 9.81744;             // the authors'
@@ -266,7 +275,8 @@ InertialUnit<double> norm_only(const std::vector<Rest>& rests, double gravity) {
   const auto residuals = [&](const Nine& p) {
     const UnitCorrection<double> correction(unit_of(p));
     Eigen::VectorXd r(static_cast<Eigen::Index>(rests.size()));
-    for (std::size_t i = 0; i < rests.size(); ++i) r(static_cast<Eigen::Index>(i)) = correction.correct(rests[i].mean).f.norm() - gravity;
+    for (std::size_t i = 0; i < rests.size(); ++i)
+      r(static_cast<Eigen::Index>(i)) = correction.correct(rests[i].mean).f.norm() - gravity;
     return r;
   };
   Nine p = Nine::Zero();
@@ -291,7 +301,8 @@ TEST_F(ImuTk, AgreesOnTheAccelerometers) {
   for (int i = 0; i < 3; ++i) {
     for (int j = i; j < 3; ++j) {
       const double sigma = ours.solution.record.sigma.unit.accel.M(i, j);
-      std::printf("[ FIGURE   ] accelerometer matrix %d%d: ours minus published %.2e, our sigma %.2e\n", i, j, difference(i, j), sigma);
+      std::printf("[ FIGURE   ] accelerometer matrix %d%d: ours minus published %.2e, our sigma %.2e\n", i, j,
+                  difference(i, j), sigma);
       EXPECT_LT(std::abs(difference(i, j)), std::max(1e-4, sigma));
     }
   }
@@ -303,7 +314,8 @@ TEST_F(ImuTk, PredictsHeldOutRests) {
   part.rests.clear();
   part.turns.clear();  // without its rests a turn has no ends: only the accelerometers are fitted here
   std::vector<Rest> held;
-  for (std::size_t i = 0; i < recording_.rests.size(); ++i) (i % 3 == 2 ? held : part.rests).push_back(recording_.rests[i]);
+  for (std::size_t i = 0; i < recording_.rests.size(); ++i)
+    (i % 3 == 2 ? held : part.rests).push_back(recording_.rests[i]);
   HandSolveOptions accel_only = options_without_cubic();
   accel_only.refuse_above.fill(1e9);
   const UnitCorrection<double> ours(solve_by_hand({part}, site_, accel_only).solution.record.value.unit);
@@ -314,7 +326,8 @@ TEST_F(ImuTk, PredictsHeldOutRests) {
     our_error.push_back(ours.correct(rest.mean).f.norm() - site_.gravity);
     their_error.push_back(theirs.correct(rest.mean).f.norm() - site_.gravity);
   }
-  std::printf("[ FIGURE   ] %zu held-out rests: ours %.4f mm/s^2 rms, the published method %.4f\n", held.size(), 1e3 * rms(our_error), 1e3 * rms(their_error));
+  std::printf("[ FIGURE   ] %zu held-out rests: ours %.4f mm/s^2 rms, the published method %.4f\n", held.size(),
+              1e3 * rms(our_error), 1e3 * rms(their_error));
   EXPECT_LT(rms(our_error), 1.05 * rms(their_error));
 }
 
@@ -326,8 +339,8 @@ TEST_F(ImuTk, PredictsHeldOutTurnsBetter) {
   std::vector<double> theirs;
   for (std::size_t i = 2; i < all.size(); i += 3) theirs.push_back(all[i]);
   ASSERT_EQ(ours.held_out.size(), theirs.size());
-  std::printf("[ FIGURE   ] %zu held-out turns: ours %.4f deg rms, published (fitted to them too) %.4f deg\n", theirs.size(), rms(ours.held_out) / kRadPerDeg,
-              rms(theirs) / kRadPerDeg);
+  std::printf("[ FIGURE   ] %zu held-out turns: ours %.4f deg rms, published (fitted to them too) %.4f deg\n",
+              theirs.size(), rms(ours.held_out) / kRadPerDeg, rms(theirs) / kRadPerDeg);
   EXPECT_LT(rms(ours.held_out), rms(theirs));
 }
 
@@ -345,8 +358,9 @@ TEST_F(ImuTk, StaysNearTheFactoryCertificate) {
     const double accel = 414.0 * (1.0 + r.value.unit.accel.M(i, i));
     const double gyro_sigma = 4770.0 * r.sigma.unit.gyro.M(i, i);
     const double accel_sigma = 414.0 * r.sigma.unit.accel.M(i, i);
-    std::printf("[ FIGURE   ] axis %d: gyro %.2f +- %.2f (certificate %.0f), accelerometer %.3f +- %.3f (certificate %.0f)\n", i, gyro, gyro_sigma, kGyro[k],
-                accel, accel_sigma, kAccel[k]);
+    std::printf(
+        "[ FIGURE   ] axis %d: gyro %.2f +- %.2f (certificate %.0f), accelerometer %.3f +- %.3f (certificate %.0f)\n",
+        i, gyro, gyro_sigma, kGyro[k], accel, accel_sigma, kAccel[k]);
     EXPECT_NEAR(gyro / kGyro[k], 1.0, 3e-3);
     EXPECT_NEAR(accel / kAccel[k], 1.0, 3e-3);
   }

@@ -14,7 +14,9 @@ namespace {
 using testing::HasSubstr;
 
 std::vector<Parameter> three() {
-  return {{"a", Entry::kGyroScale, 1e-3, "ppm", 1e6}, {"b", Entry::kGyroScale, 1e-3, "ppm", 1e6}, {"c", Entry::kGyroBias, 1.0, "deg/h", 1.0}};
+  return {{"a", Entry::kGyroScale, 1e-3, "ppm", 1e6},
+          {"b", Entry::kGyroScale, 1e-3, "ppm", 1e6},
+          {"c", Entry::kGyroBias, 1.0, "deg/h", 1.0}};
 }
 
 TEST(Judge, GivesTheInverseOfTheInformation) {

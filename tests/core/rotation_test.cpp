@@ -35,7 +35,8 @@ TEST(QuaternionLog, UndoesExp) {
   std::mt19937_64 rng(20260802);
   for (int i = 0; i < 1000; ++i) {
     const Vec3<double> phi = any_vector(rng) * std::pow(10.0, -(i % 12)) * 1.8;
-    EXPECT_LT((quaternion_log<double>(quaternion_exp<double>(phi)) - phi).norm(), 2e-15 + 1e-13 * phi.norm()) << phi.transpose();
+    EXPECT_LT((quaternion_log<double>(quaternion_exp<double>(phi)) - phi).norm(), 2e-15 + 1e-13 * phi.norm())
+        << phi.transpose();
   }
 }
 

@@ -23,8 +23,11 @@ int main() {
   using namespace trunnion;
   // the trap is live: a dynamic matrix springs it
   const long before_trap = g_allocations;
-  { const Eigen::VectorXd sprung = Eigen::VectorXd::Ones(100 + std::rand() % 2);  // NOLINT: any size the compiler cannot know
-    if (sprung.sum() < 100.0) return 2; }
+  {
+    const Eigen::VectorXd sprung =
+        Eigen::VectorXd::Ones(100 + std::rand() % 2);  // NOLINT: any size the compiler cannot know
+    if (sprung.sum() < 100.0) return 2;
+  }
   if (g_allocations == before_trap) {
     std::puts("the heap trap is not live");
     return 1;
@@ -38,7 +41,8 @@ int main() {
   InertialSample<float> sum;
   for (int i = 0; i < 100; ++i) {
     const auto t = static_cast<float>(i);
-    const InertialSample<float> input = table.input({0.01F * t, 0.5F, 0.0F}, {0.02F * t, 0.1F, 0.0F}, Vec3<float>(0.01F, 0.0F, 0.0F));
+    const InertialSample<float> input =
+        table.input({0.01F * t, 0.5F, 0.0F}, {0.02F * t, 0.1F, 0.0F}, Vec3<float>(0.01F, 0.0F, 0.0F));
     const InertialSample<float> output = correction.correct(unit.distort(input));
     sum.w += output.w;
     sum.f += output.f;

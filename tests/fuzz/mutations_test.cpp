@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the trunnion authors
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Ten thousand mutated logs, tables, YAML files and URDFs: each is read to its end or refused, and never anything else.
-/// Under the sanitize preset a memory error or undefined behaviour ends the test.
+/// Ten thousand mutated logs, tables, YAML files and URDFs: each is read to its end or refused, and never anything
+/// else. Under the sanitize preset a memory error or undefined behaviour ends the test.
 
 #include <gtest/gtest.h>
 
@@ -27,8 +27,33 @@ constexpr int kMutations = 2500;  // of each of the four kinds
 /// Flips bits, overwrites, deletes, repeats and inserts: one to eight strokes.
 std::string mutate(std::string bytes, std::mt19937_64& rng) {
   const auto below = [&](std::size_t n) { return n == 0 ? std::size_t{0} : static_cast<std::size_t>(rng() % n); };
-  static const std::vector<std::string> kWords = {"-1", "1e999", "nan", "inf", "0", "null", "[", "]", "{", "}", ":", "\"", "<", ">", "/>", "\n", "\t", ",",
-                                                  "99999999999999999999", "- ", "&a", "*a", "!!", "<robot>", std::string("\0", 1), "\xff\xff\xff\xff", "\x7f\xff\xff\xff",
+  static const std::vector<std::string> kWords = {"-1",
+                                                  "1e999",
+                                                  "nan",
+                                                  "inf",
+                                                  "0",
+                                                  "null",
+                                                  "[",
+                                                  "]",
+                                                  "{",
+                                                  "}",
+                                                  ":",
+                                                  "\"",
+                                                  "<",
+                                                  ">",
+                                                  "/>",
+                                                  "\n",
+                                                  "\t",
+                                                  ",",
+                                                  "99999999999999999999",
+                                                  "- ",
+                                                  "&a",
+                                                  "*a",
+                                                  "!!",
+                                                  "<robot>",
+                                                  std::string("\0", 1),
+                                                  "\xff\xff\xff\xff",
+                                                  "\x7f\xff\xff\xff",
                                                   "\xed\xa1\xda\x01"};
   const std::size_t strokes = 1 + below(8);
   for (std::size_t s = 0; s < strokes && !bytes.empty(); ++s) {
@@ -116,7 +141,8 @@ TEST(Mutations, OfTables) {
   const TemporaryFolder folder;
   const std::string path = folder / "fuzz.csv";
   std::string text = io::imu_csv_header();
-  for (int i = 0; i < 60; ++i) io::append_imu_csv(0.01 * i, {Vec3<double>(0.1, 0.2, 0.3), Vec3<double>(1, 2, 9.8)}, text);
+  for (int i = 0; i < 60; ++i)
+    io::append_imu_csv(0.01 * i, {Vec3<double>(0.1, 0.2, 0.3), Vec3<double>(1, 2, 9.8)}, text);
   run("tables", text, path, [&] {
     calibration::Compressor compressor({});
     ToCompressor sink(compressor);
@@ -130,9 +156,12 @@ TEST(Mutations, OfYaml) {
   static_cast<void>(folder.file("sheet.yaml", io::read_whole(std::string(TRUNNION_SHARE) + "/3dm-cv7.yaml")));
   const std::string path = folder / "run.yaml";
   const std::string seed =
-      "format: trunnion-run/1\nsite: {latitude_deg: 43.88, height_m: 220, gravity_m_s2: 9.8, gravity_sigma_m_s2: 1e-5}\nrig: table.urdf\nsheet: sheet.yaml\n"
-      "clock: {imu_to_encoder_offset: estimate}\nbias: per_recording\nmodel: [cubic, g_sensitivity]\nrefuse_above: {gyro_scale_ppm: 500}\n"
-      "limits: {gyro_bias_deg_per_h: {value: 100, sigma: 2}}\ncolumns: {t: {column: 0, unit: s}}\nrecordings:\n  - {mount: mount_1, log: a.lcm}\n"
+      "format: trunnion-run/1\nsite: {latitude_deg: 43.88, height_m: 220, gravity_m_s2: 9.8, gravity_sigma_m_s2: "
+      "1e-5}\nrig: table.urdf\nsheet: sheet.yaml\n"
+      "clock: {imu_to_encoder_offset: estimate}\nbias: per_recording\nmodel: [cubic, g_sensitivity]\nrefuse_above: "
+      "{gyro_scale_ppm: 500}\n"
+      "limits: {gyro_bias_deg_per_h: {value: 100, sigma: 2}}\ncolumns: {t: {column: 0, unit: s}}\nrecordings:\n  - "
+      "{mount: mount_1, log: a.lcm}\n"
       "  - {mount: mount_2, log: {imu: b.csv, encoder: c.csv}}\n";
   run("run files", seed, path, [&] { static_cast<void>(io::read_run_file(path)); });
   io::CalibrationFile file;
@@ -141,7 +170,8 @@ TEST(Mutations, OfYaml) {
   file.record.mounts = 2;
   file.record.recordings = 1;
   const std::string calibration = folder / "calibration.yaml";
-  run("calibration files", io::to_yaml(file), calibration, [&] { static_cast<void>(io::read_calibration_file(calibration)); });
+  run("calibration files", io::to_yaml(file), calibration,
+      [&] { static_cast<void>(io::read_calibration_file(calibration)); });
 }
 
 TEST(Mutations, OfUrdf) {

@@ -72,9 +72,12 @@ TEST(CalibrationFile, RefusesWhatItCannotUse) {
     text.replace(text.find(from), from.size(), to);
     return folder.file("c.yaml", text);
   };
-  EXPECT_REFUSES(ExitCode::kInput, "gyroscope.bias: unknown key; did you mean 'bias_rad_s'?", read_calibration_file(changed("bias_rad_s", "bias")));
-  EXPECT_REFUSES(ExitCode::kInput, "format: should be trunnion-calibration/1", read_calibration_file(changed("calibration/1", "calibration/9")));
-  EXPECT_REFUSES(ExitCode::kInput, "is no mount of the rig", read_calibration_file(changed("\"mount\":\"mount_2\"", "\"mount\":\"mount_7\"")));
+  EXPECT_REFUSES(ExitCode::kInput, "gyroscope.bias: unknown key; did you mean 'bias_rad_s'?",
+                 read_calibration_file(changed("bias_rad_s", "bias")));
+  EXPECT_REFUSES(ExitCode::kInput, "format: should be trunnion-calibration/1",
+                 read_calibration_file(changed("calibration/1", "calibration/9")));
+  EXPECT_REFUSES(ExitCode::kInput, "is no mount of the rig",
+                 read_calibration_file(changed("\"mount\":\"mount_2\"", "\"mount\":\"mount_7\"")));
 }
 
 }  // namespace

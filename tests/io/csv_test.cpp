@@ -53,7 +53,9 @@ TEST_F(Csv, FindsColumnsByHeaderAndConvertsUnits) {
 }
 
 TEST_F(Csv, ColumnsMayStandInAnyOrderAmongOthers) {
-  read("note;accel_z_m_s2;t_ms;gyro_x_rad_s;gyro_y_rad_s;gyro_z_rad_s;accel_x_m_s2;accel_y_m_s2\nhello;9.8;5;1;2;3;4;5\n");
+  read(
+      "note;accel_z_m_s2;t_ms;gyro_x_rad_s;gyro_y_rad_s;gyro_z_rad_s;accel_x_m_s2;accel_y_m_s2\nhello;9.8;5;1;2;3;4;"
+      "5\n");
   ASSERT_EQ(collect_.samples.size(), 1U);
   EXPECT_EQ(collect_.stamps[0], 5000);
   EXPECT_EQ(collect_.samples[0].f, Vec3<double>(4, 5, 9.8));
@@ -63,7 +65,8 @@ TEST_F(Csv, AMapServesAFileWithoutHeader) {
   ColumnMap map;
   map["t"] = {"", 0, "us"};
   int index = 1;
-  for (const char* q : {"gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z"}) map[q] = {"", index++, "counts"};
+  for (const char* q : {"gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z"})
+    map[q] = {"", index++, "counts"};
   SensorSheet sheet;
   sheet.gyro_counts = {100.0, 32768.0};
   sheet.accel_counts = {10.0, 0.0};
@@ -75,8 +78,10 @@ TEST_F(Csv, AMapServesAFileWithoutHeader) {
 
 TEST_F(Csv, RefusesAndSaysWhere) {
   EXPECT_REFUSES(ExitCode::kInput, "a.csv: is empty", read("\n  \n"));
-  EXPECT_REFUSES(ExitCode::kInput, "a.csv:3: row too short: 4 columns, 7 needed", read(std::string(kHeader) + "0,0,0,0,0,0,1\n0.01,1,2,3\n"));
-  EXPECT_REFUSES(ExitCode::kInput, "a.csv:2: gyro_y: should be a number, is 'x7'", read(std::string(kHeader) + "0,0,x7,0,0,0,1\n"));
+  EXPECT_REFUSES(ExitCode::kInput, "a.csv:3: row too short: 4 columns, 7 needed",
+                 read(std::string(kHeader) + "0,0,0,0,0,0,1\n0.01,1,2,3\n"));
+  EXPECT_REFUSES(ExitCode::kInput, "a.csv:2: gyro_y: should be a number, is 'x7'",
+                 read(std::string(kHeader) + "0,0,x7,0,0,0,1\n"));
   EXPECT_REFUSES(ExitCode::kInput, "a.csv:2: accel_z: is not finite", read(std::string(kHeader) + "0,0,0,0,0,0,nan\n"));
   EXPECT_REFUSES(ExitCode::kInput, "a.csv:1: gyro_x: the header has no unit: name it one of gyro_x_rad_s, gyro_x_deg_s",
                  read("t_s,gyro_x,gyro_y,gyro_z,accel_x,accel_y,accel_z\n0,0,0,0,0,0,1\n"));
@@ -91,9 +96,11 @@ TEST_F(Csv, TwoFilesMustAgreeInTheirStamps) {
   read_split_csv(gyro, folder_.file("a.txt", "0.00 1 2 3\n0.01 4 5 6\n"), {}, {}, collect_, digest_, other);
   ASSERT_EQ(collect_.samples.size(), 2U);
   EXPECT_EQ(collect_.samples[1].w, Vec3<double>(4, 5, 6));
-  EXPECT_REFUSES(ExitCode::kInput, "b.txt:2: t: is not the stamp of the same row",
-                 read_split_csv(gyro, folder_.file("b.txt", "0.00 1 2 3\n0.02 4 5 6\n"), {}, {}, collect_, digest_, other));
-  EXPECT_REFUSES(ExitCode::kInput, "has more rows than", read_split_csv(gyro, folder_.file("c.txt", "0.00 1 2 3\n"), {}, {}, collect_, digest_, other));
+  EXPECT_REFUSES(
+      ExitCode::kInput, "b.txt:2: t: is not the stamp of the same row",
+      read_split_csv(gyro, folder_.file("b.txt", "0.00 1 2 3\n0.02 4 5 6\n"), {}, {}, collect_, digest_, other));
+  EXPECT_REFUSES(ExitCode::kInput, "has more rows than",
+                 read_split_csv(gyro, folder_.file("c.txt", "0.00 1 2 3\n"), {}, {}, collect_, digest_, other));
 }
 
 TEST_F(Csv, ReadsEncoders) {

@@ -51,7 +51,8 @@ std::string write_log(const TemporaryFolder& folder, int n, const std::function<
 /// Bytes of one IMU and one encoder record: header, channel, data.
 constexpr std::size_t kPair = 28 + 3 + 80 + 28 + 7 + 44;
 
-std::string change(const TemporaryFolder& folder, const std::string& path, const std::function<void(std::string&)>& edit) {
+std::string change(const TemporaryFolder& folder, const std::string& path,
+                   const std::function<void(std::string&)>& edit) {
   std::string bytes = read_whole(path);
   edit(bytes);
   return folder.file("changed.lcm", bytes);
@@ -86,7 +87,9 @@ TEST(LcmLog, SurvivesACorruptLength) {
 // A plausible but wrong length would swallow the records behind it: the sync words inside give it away.
 TEST(LcmLog, SurvivesAPlausibleWrongLength) {
   const TemporaryFolder folder;
-  const std::string path = change(folder, write_log(folder, 100), [](std::string& bytes) { bytes.replace(5 * kPair + 24, 4, std::string("\0\0\x10\0", 4)); });
+  const std::string path = change(folder, write_log(folder, 100), [](std::string& bytes) {
+    bytes.replace(5 * kPair + 24, 4, std::string("\0\0\x10\0", 4));
+  });
   Collect collect;
   EXPECT_EQ(read_lcm_recording(path, {}, true, collect).records, 1);
   EXPECT_EQ(collect.samples.size(), 99U);
@@ -95,7 +98,9 @@ TEST(LcmLog, SurvivesAPlausibleWrongLength) {
 
 TEST(LcmLog, CountsTheRecordsThatAStretchOfDamageTook) {
   const TemporaryFolder folder;
-  const std::string path = change(folder, write_log(folder, 100), [](std::string& bytes) { bytes.replace(10 * kPair, 5 * kPair, std::string(5 * kPair, 'x')); });
+  const std::string path = change(folder, write_log(folder, 100), [](std::string& bytes) {
+    bytes.replace(10 * kPair, 5 * kPair, std::string(5 * kPair, 'x'));
+  });
   Collect collect;
   const LcmLosses losses = read_lcm_recording(path, {}, true, collect);
   EXPECT_EQ(losses.records, 10);
@@ -105,7 +110,8 @@ TEST(LcmLog, CountsTheRecordsThatAStretchOfDamageTook) {
 
 TEST(LcmLog, SurvivesACutEnd) {
   const TemporaryFolder folder;
-  const std::string path = change(folder, write_log(folder, 100), [](std::string& bytes) { bytes.resize(bytes.size() - 10); });
+  const std::string path =
+      change(folder, write_log(folder, 100), [](std::string& bytes) { bytes.resize(bytes.size() - 10); });
   Collect collect;
   EXPECT_EQ(read_lcm_recording(path, {}, true, collect).records, 1);
   EXPECT_EQ(collect.samples.size(), 100U);
@@ -129,16 +135,21 @@ TEST(LcmRecording, PassesOverOtherChannels) {
 TEST(LcmRecording, RefusesWhatItCannotUse) {
   const TemporaryFolder folder;
   Collect collect;
-  EXPECT_REFUSES(ExitCode::kInput, "cannot read: No such file", read_lcm_recording(folder / "none.lcm", {}, true, collect));
+  EXPECT_REFUSES(ExitCode::kInput, "cannot read: No such file",
+                 read_lcm_recording(folder / "none.lcm", {}, true, collect));
   EXPECT_REFUSES(ExitCode::kInput, "is empty", read_lcm_recording(folder.file("empty.lcm", ""), {}, true, collect));
-  EXPECT_REFUSES(ExitCode::kInput, "bytes are damaged", read_lcm_recording(folder.file("noise.lcm", std::string(5000, '\xed')), {}, true, collect));
+  EXPECT_REFUSES(ExitCode::kInput, "bytes are damaged",
+                 read_lcm_recording(folder.file("noise.lcm", std::string(5000, '\xed')), {}, true, collect));
   EXPECT_REFUSES(ExitCode::kInput, "no usable message on the encoder channel 'TABLE'",
                  read_lcm_recording(write_log(folder, 10), {"IMU", "TABLE"}, true, collect));
   const std::size_t encoder_record = 2 * kPair + 28 + 3 + 80;
   const auto foreign = [&](int messages) {
-    return change(folder, write_log(folder, messages), [&](std::string& b) { b.replace(encoder_record + 28 + 7, 8, std::string(8, '\0')); });
+    return change(folder, write_log(folder, messages),
+                  [&](std::string& b) { b.replace(encoder_record + 28 + 7, 8, std::string(8, '\0')); });
   };
-  EXPECT_REFUSES(ExitCode::kInput, "byte " + std::to_string(encoder_record) + ": channel ENCODER: holds a message of another type, fingerprint 0x0000000000000000",
+  EXPECT_REFUSES(ExitCode::kInput,
+                 "byte " + std::to_string(encoder_record) +
+                     ": channel ENCODER: holds a message of another type, fingerprint 0x0000000000000000",
                  read_lcm_recording(foreign(10), {}, true, collect));
   // one in two thousand is damage, and counted
   EXPECT_EQ(read_lcm_recording(foreign(1000), {}, true, collect).records, 1);
@@ -154,7 +165,8 @@ TEST(LcmRecording, RefusesValuesThatAreNotFinite) {
   };
   const std::string where = "log.lcm: byte " + std::to_string(3 * kPair) + ": angular_rate[1]: is not finite";
   EXPECT_REFUSES(ExitCode::kInput, where, read_lcm_recording(spoilt(std::nan("")), {}, true, collect));
-  EXPECT_REFUSES(ExitCode::kInput, where, read_lcm_recording(spoilt(std::numeric_limits<double>::infinity()), {}, true, collect));
+  EXPECT_REFUSES(ExitCode::kInput, where,
+                 read_lcm_recording(spoilt(std::numeric_limits<double>::infinity()), {}, true, collect));
 }
 
 }  // namespace

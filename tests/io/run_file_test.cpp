@@ -37,10 +37,11 @@ TEST_F(RunFileTest, ResolvesPathsAgainstItselfAndFillsInTheDefaults) {
 }
 
 TEST_F(RunFileTest, ReadsEveryKey) {
-  const RunFile run = read(with(
-      "axes: [yaw, tilt]\nserial: A1\nclock: {imu_to_encoder_offset: 0.002}\nbias: shared\nmodel: [quadratic]\n"
-      "refuse_above: {gyro_scale_ppm: 1000}\nlimits: {gyro_bias_deg_per_h: {value: 100, sigma: 2}}\nchannels: {imu: A, encoder: B}\n"
-      "columns: {t: {column: 0, unit: s}, gyro_x: {column: rate x, unit: deg/s}}\n"));
+  const RunFile run = read(
+      with("axes: [yaw, tilt]\nserial: A1\nclock: {imu_to_encoder_offset: 0.002}\nbias: shared\nmodel: [quadratic]\n"
+           "refuse_above: {gyro_scale_ppm: 1000}\nlimits: {gyro_bias_deg_per_h: {value: 100, sigma: 2}}\nchannels: "
+           "{imu: A, encoder: B}\n"
+           "columns: {t: {column: 0, unit: s}, gyro_x: {column: rate x, unit: deg/s}}\n"));
   EXPECT_EQ(run.outer_axis, "yaw");
   EXPECT_EQ(run.inner_axis, "tilt");
   EXPECT_FALSE(run.estimate_clock_offset);
@@ -52,11 +53,14 @@ TEST_F(RunFileTest, ReadsEveryKey) {
 }
 
 TEST_F(RunFileTest, NamesAnUnknownKeyAndTheNearestKnownOne) {
-  EXPECT_REFUSES(ExitCode::kInput, "run.yaml:6: recording: unknown key; did you mean 'recordings'?", read(with("recording: 3\n")));
+  EXPECT_REFUSES(ExitCode::kInput, "run.yaml:6: recording: unknown key; did you mean 'recordings'?",
+                 read(with("recording: 3\n")));
   EXPECT_REFUSES(ExitCode::kInput, "run.yaml:2: site.latitude: unknown key; did you mean 'latitude_deg'?",
                  read("format: trunnion-run/1\nsite: {latitude: 3}\nrecordings: [{log: a}]\n"));
-  EXPECT_REFUSES(ExitCode::kInput, "refuse_above.gyro_scale: unknown key; did you mean 'gyro_scale_ppm'?", read(with("refuse_above: {gyro_scale: 3}\n")));
-  EXPECT_REFUSES(ExitCode::kInput, "model[0]: unknown term 'cubik'; did you mean 'cubic'?", read(with("model: [cubik]\n")));
+  EXPECT_REFUSES(ExitCode::kInput, "refuse_above.gyro_scale: unknown key; did you mean 'gyro_scale_ppm'?",
+                 read(with("refuse_above: {gyro_scale: 3}\n")));
+  EXPECT_REFUSES(ExitCode::kInput, "model[0]: unknown term 'cubik'; did you mean 'cubic'?",
+                 read(with("model: [cubik]\n")));
 }
 
 TEST_F(RunFileTest, NamesAWrongTypeRangeOrUnit) {
@@ -64,11 +68,15 @@ TEST_F(RunFileTest, NamesAWrongTypeRangeOrUnit) {
                  read("format: trunnion-run/1\nsite: {latitude_deg: north}\nrecordings: [{log: a}]\n"));
   EXPECT_REFUSES(ExitCode::kInput, "site.latitude_deg: should lie in [-90, 90], is 143.88",
                  read("format: trunnion-run/1\nsite: {latitude_deg: 143.88}\nrecordings: [{log: a}]\n"));
-  EXPECT_REFUSES(ExitCode::kInput, "columns.gyro_x.unit: 'm/s' does not measure gyro_x: one of rad/s, deg/s, deg/h, counts",
+  EXPECT_REFUSES(ExitCode::kInput,
+                 "columns.gyro_x.unit: 'm/s' does not measure gyro_x: one of rad/s, deg/s, deg/h, counts",
                  read(with("columns: {gyro_x: {column: 1, unit: m/s}}\n")));
-  EXPECT_REFUSES(ExitCode::kInput, "format: should be trunnion-run/1", read("format: trunnion-run/2\nsite: {latitude_deg: 1}\nrecordings: []\n"));
-  EXPECT_REFUSES(ExitCode::kInput, "recordings: is empty", read("format: trunnion-run/1\nsite: {latitude_deg: 1}\nrecordings: []\n"));
-  EXPECT_REFUSES(ExitCode::kInput, "recordings[0].mount: is missing", read("format: trunnion-run/1\nsite: {latitude_deg: 1}\nrig: a\nrecordings: [{log: a}]\n"));
+  EXPECT_REFUSES(ExitCode::kInput, "format: should be trunnion-run/1",
+                 read("format: trunnion-run/2\nsite: {latitude_deg: 1}\nrecordings: []\n"));
+  EXPECT_REFUSES(ExitCode::kInput, "recordings: is empty",
+                 read("format: trunnion-run/1\nsite: {latitude_deg: 1}\nrecordings: []\n"));
+  EXPECT_REFUSES(ExitCode::kInput, "recordings[0].mount: is missing",
+                 read("format: trunnion-run/1\nsite: {latitude_deg: 1}\nrig: a\nrecordings: [{log: a}]\n"));
   EXPECT_REFUSES(ExitCode::kInput, "bias: stands twice", read(with("bias: shared\nbias: shared\n")));
   EXPECT_REFUSES(ExitCode::kInput, "not YAML", read("format: [\n"));
   EXPECT_REFUSES(ExitCode::kInput, "nested too deep", read("format: " + std::string(5000, '[') + "\n"));
@@ -77,15 +85,21 @@ TEST_F(RunFileTest, NamesAWrongTypeRangeOrUnit) {
 TEST_F(RunFileTest, ReadsTheSheetBesideIt) {
   static_cast<void>(folder_.file("sheet.yaml",
                                  "format: trunnion-sheet/1\nmodel: M\nrate_hz: 400\n"
-                                 "gyroscope: {range_deg_per_s: 500, noise_deg_per_h_per_rt_hz: 5, bias_instability_deg_per_h: 1.5, bias_correlation_time_s: 200}\n"
+                                 "gyroscope: {range_deg_per_s: 500, noise_deg_per_h_per_rt_hz: 5, "
+                                 "bias_instability_deg_per_h: 1.5, bias_correlation_time_s: 200}\n"
                                  "accelerometer: {range_g: 8, noise_ug_per_rt_hz: 25}\n"));
   const RunFile run = read(with("sheet: sheet.yaml\n"));
   EXPECT_TRUE(run.sheet.has_noise);
   EXPECT_NEAR(run.sheet.noise.gyro.density, 5.0 * kRadPerSPerDegPerH, 1e-18);
   EXPECT_NEAR(run.sheet.accel_range, 8.0 * kStandardGravity, 1e-12);
-  static_cast<void>(folder_.file("sheet.yaml", "format: trunnion-sheet/1\nmodel: M\ngyroscope: {noise_deg_per_h_per_rt_hz: 5}\naccelerometer: {}\n"));
-  EXPECT_REFUSES(ExitCode::kInput, "sheet.yaml:4: accelerometer: states no noise, while the other triad does", read(with("sheet: sheet.yaml\n")));
-  static_cast<void>(folder_.file("sheet.yaml", "format: trunnion-sheet/1\nmodel: M\ngyroscope: {bias_instability_deg_per_h: 5}\naccelerometer: {}\n"));
+  static_cast<void>(folder_.file(
+      "sheet.yaml",
+      "format: trunnion-sheet/1\nmodel: M\ngyroscope: {noise_deg_per_h_per_rt_hz: 5}\naccelerometer: {}\n"));
+  EXPECT_REFUSES(ExitCode::kInput, "sheet.yaml:4: accelerometer: states no noise, while the other triad does",
+                 read(with("sheet: sheet.yaml\n")));
+  static_cast<void>(folder_.file(
+      "sheet.yaml",
+      "format: trunnion-sheet/1\nmodel: M\ngyroscope: {bias_instability_deg_per_h: 5}\naccelerometer: {}\n"));
   EXPECT_REFUSES(ExitCode::kInput, "gyroscope.bias_correlation_time_s: is missing", read(with("sheet: sheet.yaml\n")));
 }
 

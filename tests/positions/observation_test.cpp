@@ -17,7 +17,8 @@ std::array<double, kWindowNodes> moments(const std::vector<std::pair<double, dou
   double length = 0.0;
   for (const auto& [a, b] : intervals) {
     length += b - a;
-    for (int j = 0; j < kWindowNodes; ++j) moment[static_cast<std::size_t>(j)] += (std::pow(b, j + 1) - std::pow(a, j + 1)) / (j + 1);
+    for (int j = 0; j < kWindowNodes; ++j)
+      moment[static_cast<std::size_t>(j)] += (std::pow(b, j + 1) - std::pow(a, j + 1)) / (j + 1);
   }
   for (double& m : moment) m /= length;
   return moment;
@@ -25,7 +26,8 @@ std::array<double, kWindowNodes> moments(const std::vector<std::pair<double, dou
 
 TEST(QuadratureWeights, OfAWholeWindowAreGaussLegendre) {
   const auto weight = quadrature_weights(moments({{-1.0, 1.0}}));
-  constexpr std::array<double, 5> kHalfLegendre = {0.11846344252809454, 0.23931433524968324, 0.28444444444444444, 0.23931433524968324, 0.11846344252809454};
+  constexpr std::array<double, 5> kHalfLegendre = {0.11846344252809454, 0.23931433524968324, 0.28444444444444444,
+                                                   0.23931433524968324, 0.11846344252809454};
   for (std::size_t k = 0; k < 5; ++k) EXPECT_NEAR(weight[k], kHalfLegendre[k], 1e-14);
 }
 

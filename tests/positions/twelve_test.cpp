@@ -22,7 +22,8 @@ TEST(TwelvePositions, ExciteWhatTheTableSays) {
 
 TEST(TwelvePositions, MeetEachCaseAxisWithEachTableAxisBothWays) {
   std::map<int, std::set<int>> met;  // case axis -> table axes
-  for (const Position& position : kTwelvePositions) met[excited_axis(cyclic_mount(position.mount), position)].insert(position.axis);
+  for (const Position& position : kTwelvePositions)
+    met[excited_axis(cyclic_mount(position.mount), position)].insert(position.axis);
   for (const int axis : {-3, -2, -1, 1, 2, 3}) EXPECT_EQ(met[axis].size(), 2U) << axis;
 }
 

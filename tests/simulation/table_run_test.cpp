@@ -39,7 +39,9 @@ Recorded record(const TableRunSettings& settings, const TableMotion& motion) {
                run.utime.push_back(t);
                run.samples.push_back(s);
              },
-             [&](std::int64_t, std::int64_t, double a, double p) { run.encoders.push_back({a, p}); }});
+             [&](std::int64_t, std::int64_t, double a, double p) {
+               run.encoders.push_back({a, p});
+             }});
   return run;
 }
 
@@ -93,7 +95,8 @@ TEST(RunTable, CausesHaveStreamsOfTheirOwn) {
   const auto offered = static_cast<double>(clean.samples.size());
   // binomial: 2 % and 1 % within five sigma, false alarm 1e-6
   EXPECT_NEAR(static_cast<double>(dirty.samples.size()) / offered, 0.98, 5.0 * std::sqrt(0.02 * 0.98 / offered));
-  EXPECT_NEAR(static_cast<double>(matched) / static_cast<double>(dirty.samples.size()), 0.99, 5.0 * std::sqrt(0.01 * 0.99 / offered));
+  EXPECT_NEAR(static_cast<double>(matched) / static_cast<double>(dirty.samples.size()), 0.99,
+              5.0 * std::sqrt(0.01 * 0.99 / offered));
 }
 
 // At rest a perfect unit reads the Earth's rate and gravity.

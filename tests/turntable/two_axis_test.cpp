@@ -35,7 +35,9 @@ TwoAxisErrors<double> odd_errors() {
   return errors;
 }
 
-AxisMotion<double> azimuth_at(double t) { return {0.4 + 0.8 * t + 0.1 * std::sin(2 * t), 0.8 + 0.2 * std::cos(2 * t), -0.4 * std::sin(2 * t)}; }
+AxisMotion<double> azimuth_at(double t) {
+  return {0.4 + 0.8 * t + 0.1 * std::sin(2 * t), 0.8 + 0.2 * std::cos(2 * t), -0.4 * std::sin(2 * t)};
+}
 AxisMotion<double> pitch_at(double t) { return {0.3 + 0.5 * std::sin(t), 0.5 * std::cos(t), -0.5 * std::sin(t)}; }
 
 /// Readings of the true motion, with derivatives by the chain rule.
@@ -65,11 +67,14 @@ TEST(TwoAxisTable, RateIsTheDerivativeOfAttitude) {
   constexpr double h = 1e-4;
   for (double t = 0.0; t < 5.0; t += 0.31) {
     const TwoAxisErrors<double> errors = odd_errors();
-    const auto attitude = [&](double s) { return Mat3<double>(rotation_exp<double>(w_ie_u * s) * table.attitude(azimuth_at(s).angle, pitch_at(s).angle)); };
+    const auto attitude = [&](double s) {
+      return Mat3<double>(rotation_exp<double>(w_ie_u * s) * table.attitude(azimuth_at(s).angle, pitch_at(s).angle));
+    };
     const Quaternion<double> step(Mat3<double>(attitude(t - h).transpose() * attitude(t + h)));
     const Vec3<double> w = quaternion_log<double>(step) / (2.0 * h);
     const InertialSample<double> input =
-        table.input(reading_of(errors.eccentricity[0], azimuth_at(t)), reading_of(errors.eccentricity[1], pitch_at(t)), Vec3<double>::Zero());
+        table.input(reading_of(errors.eccentricity[0], azimuth_at(t)), reading_of(errors.eccentricity[1], pitch_at(t)),
+                    Vec3<double>::Zero());
     EXPECT_LT((input.w - w).norm(), 5e-8) << t;
   }
 }
@@ -83,14 +88,15 @@ TEST(TwoAxisTable, ForceIsTheSecondDerivativeOfPosition) {
   for (double t = 0.0; t < 5.0; t += 0.31) {
     const TwoAxisErrors<double> errors = odd_errors();
     const auto position = [&](double s) {
-      return Vec3<double>(rotation_exp<double>(w_ie_u * s) * table.position(azimuth_at(s).angle, pitch_at(s).angle, lever));
+      return Vec3<double>(rotation_exp<double>(w_ie_u * s) *
+                          table.position(azimuth_at(s).angle, pitch_at(s).angle, lever));
     };
     const Vec3<double> r_ddot = (position(t + h) - 2.0 * position(t) + position(t - h)) / (h * h);
     const Mat3<double> C_ip = rotation_exp<double>(w_ie_u * t) * table.attitude(azimuth_at(t).angle, pitch_at(t).angle);
     const Vec3<double> up_i = rotation_exp<double>(w_ie_u * t) * Vec3<double>::UnitZ();
     const Vec3<double> f = C_ip.transpose() * (r_ddot + kGravity * up_i);
-    const InertialSample<double> input =
-        table.input(reading_of(errors.eccentricity[0], azimuth_at(t)), reading_of(errors.eccentricity[1], pitch_at(t)), lever);
+    const InertialSample<double> input = table.input(reading_of(errors.eccentricity[0], azimuth_at(t)),
+                                                     reading_of(errors.eccentricity[1], pitch_at(t)), lever);
     EXPECT_LT((input.f - f).norm(), 5e-7) << t;
   }
 }
@@ -107,8 +113,9 @@ TEST(TwoAxisTable, AtRestItFeelsGravityAndTheEarth) {
 
 // Frames of docs/reference/notation.md: a level rig with axes z and y has canonical stages equal to its links.
 TEST(TwoAxisGeometry, OfAxesZAndYIsTheIdentity) {
-  const Result<TwoAxisGeometry> rig = TwoAxisGeometry::from_chain(Mat3<double>::Identity(), Vec3<double>::UnitZ(), Mat3<double>::Identity(),
-                                                                  Vec3<double>::Zero(), Vec3<double>::UnitY());
+  const Result<TwoAxisGeometry> rig =
+      TwoAxisGeometry::from_chain(Mat3<double>::Identity(), Vec3<double>::UnitZ(), Mat3<double>::Identity(),
+                                  Vec3<double>::Zero(), Vec3<double>::UnitY());
   ASSERT_TRUE(rig.ok());
   EXPECT_TRUE(rig.value().C_to.isIdentity(1e-15));
   EXPECT_TRUE(rig.value().C_qp.isIdentity(1e-15));
@@ -116,8 +123,9 @@ TEST(TwoAxisGeometry, OfAxesZAndYIsTheIdentity) {
 }
 
 TEST(TwoAxisGeometry, RefusesParallelAxes) {
-  const auto rig = TwoAxisGeometry::from_chain(Mat3<double>::Identity(), Vec3<double>::UnitZ(), Mat3<double>::Identity(), Vec3<double>::Zero(),
-                                               Vec3<double>(0.05, 0.0, 1.0).normalized());
+  const auto rig =
+      TwoAxisGeometry::from_chain(Mat3<double>::Identity(), Vec3<double>::UnitZ(), Mat3<double>::Identity(),
+                                  Vec3<double>::Zero(), Vec3<double>(0.05, 0.0, 1.0).normalized());
   EXPECT_EQ(rig.status(), Status::kNotObservable);
 }
 

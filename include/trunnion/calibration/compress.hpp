@@ -5,8 +5,9 @@
 /// samples.
 ///
 /// A sample whose stamp does not increase, or leaps by more than ten minutes, is dropped and counted; stamps that stay
-/// away are a clock that was reset, and refused. A sample that stands alone against its neighbours (eight robust sigmas) is an outlier, one at or past
-/// the sensor's range is saturated: both are left out, and the window's weights know it (positions/observation.hpp).
+/// away are a clock that was reset, and refused. A sample that stands alone against its neighbours (eight robust
+/// sigmas) is an outlier, one at or past the sensor's range is saturated: both are left out, and the window's weights
+/// know it (positions/observation.hpp).
 
 #pragma once
 
@@ -50,23 +51,23 @@ class ChannelClock {
 };
 
 struct CompressOptions {
-  double window = 0.1;          ///< length of a window [s]
-  double period = 0.0;          ///< nominal sample period [s]; 0: the median of the first 256 steps
-  double gyro_range = 0.0;      ///< rad/s; 0: unknown
-  double accel_range = 0.0;     ///< m/s^2; 0: unknown
-  std::string name;             ///< of the recording, for messages
+  double window = 0.1;       ///< length of a window [s]
+  double period = 0.0;       ///< nominal sample period [s]; 0: the median of the first 256 steps
+  double gyro_range = 0.0;   ///< rad/s; 0: unknown
+  double accel_range = 0.0;  ///< m/s^2; 0: unknown
+  std::string name;          ///< of the recording, for messages
 };
 
 /// What was counted on the way.
 struct RecordingFigures {
-  long long samples = 0;      ///< used
-  long long duplicates = 0;   ///< IMU and encoder stamps that repeat
-  long long stray = 0;        ///< IMU and encoder stamps that step back or leap
+  long long samples = 0;     ///< used
+  long long duplicates = 0;  ///< IMU and encoder stamps that repeat
+  long long stray = 0;       ///< IMU and encoder stamps that step back or leap
   long long outliers = 0;
   long long saturated = 0;
-  long long missing = 0;      ///< samples that the nominal period leaves a hole for
-  double period = 0.0;        ///< s
-  double duration = 0.0;      ///< s, first to last sample
+  long long missing = 0;         ///< samples that the nominal period leaves a hole for
+  double period = 0.0;           ///< s
+  double duration = 0.0;         ///< s, first to last sample
   double first_saturated = 0.0;  ///< s after the start
 };
 

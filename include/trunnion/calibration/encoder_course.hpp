@@ -5,10 +5,10 @@
 ///
 ///   reading(t) = sum_k c_k B((t - t_0) / h - k),   c = argmin sum_i (reading_i - reading(t_i))^2       ... (1)
 ///
-/// h is 4.7 encoder periods and at least 23.5 ms: no whole fraction of a window, so that the nodes of the windows meet the
-/// knots at all phases and the O(h^3) ripple of the rate averages out. The spline smooths the quantisation and gives
-/// rate and acceleration at any instant, so that a clock offset needs no second pass. Memory: h sets it, not the samples. C. de Boor, A Practical Guide to Splines, ch. XIV; docs/theory/calibration.md,
-/// eq. 16.
+/// h is 4.7 encoder periods and at least 23.5 ms: no whole fraction of a window, so that the nodes of the windows meet
+/// the knots at all phases and the O(h^3) ripple of the rate averages out. The spline smooths the quantisation and
+/// gives rate and acceleration at any instant, so that a clock offset needs no second pass. Memory: h sets it, not the
+/// samples. C. de Boor, A Practical Guide to Splines, ch. XIV; docs/theory/calibration.md, eq. 16.
 
 #pragma once
 
@@ -45,7 +45,9 @@ class EncoderCourse {
   [[nodiscard]] double begin() const { return t0_; }
   [[nodiscard]] double end() const { return t_last_; }
   [[nodiscard]] std::size_t readings() const { return readings_; }
-  [[nodiscard]] std::size_t bytes() const { return coefficient_.capacity() * sizeof(coefficient_[0]) + gap_.capacity(); }
+  [[nodiscard]] std::size_t bytes() const {
+    return coefficient_.capacity() * sizeof(coefficient_[0]) + gap_.capacity();
+  }
   /// 1 sigma of one reading [rad], from its third differences: quantisation and noise together.
   [[nodiscard]] double reading_sigma() const;
   [[nodiscard]] double knot_spacing() const { return h_; }

@@ -24,23 +24,24 @@ struct HandSolveOptions {
   ModelTerms terms;
   EntryLimits refuse_above = default_refuse_above();
   bool bias_per_recording = true;
-  bool has_noise = false;   ///< white noise from a sheet; else from the rests
+  bool has_noise = false;  ///< white noise from a sheet; else from the rests
   UnitNoise noise;
   double g_sensitivity_sigma = 1.75e-4;  ///< prior, (rad/s)/(m/s^2): 0.1 deg/s/g
-  int hold_out = 0;         ///< leave every n-th turn out of the fit; 0: none
+  int hold_out = 0;                      ///< leave every n-th turn out of the fit; 0: none
 };
 
 struct HandSolution {
   Solution solution;
   int rests = 0;
   int turns = 0;
-  double rest_scatter = 0.0;  ///< 1 sigma of a rest's force beyond white noise [m/s^2]
-  double turn_scatter = 0.0;  ///< 1 sigma of a turn beyond white noise [rad]
+  double rest_scatter = 0.0;     ///< 1 sigma of a rest's force beyond white noise [m/s^2]
+  double turn_scatter = 0.0;     ///< 1 sigma of a turn beyond white noise [rad]
   std::vector<double> held_out;  ///< error of the predicted direction of gravity after each turn left out [rad]
 };
 
 /// @throws Error (input) without a rest, (numerics) when the iteration does not converge
-HandSolution solve_by_hand(const std::vector<HandRecording>& recordings, const Site& site, const HandSolveOptions& options);
+HandSolution solve_by_hand(const std::vector<HandRecording>& recordings, const Site& site,
+                           const HandSolveOptions& options);
 
 /// Angle [rad] between the direction of gravity that each turn predicts from the rest before and the one measured at
 /// the rest after, for a unit taken as known. The Earth's rate is left out: its direction is not known here.

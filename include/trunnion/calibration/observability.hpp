@@ -8,7 +8,8 @@
 ///   A = D J^T J D,  D = diag(u),   A = V diag(lambda) V^T,   sigma_i / u_i = sqrt(sum_j V_ij^2 / lambda_j)   ... (1)
 ///
 /// an entry whose sigma passes its limit is refused, and the eigenvectors that carry its variance are named. An exact
-/// loss of rank is lambda_j below 1e-15 of the largest: its entries pass every limit. docs/theory/calibration.md, eq. 22.
+/// loss of rank is lambda_j below 1e-15 of the largest: its entries pass every limit. docs/theory/calibration.md,
+/// eq. 22.
 
 #pragma once
 
@@ -22,11 +23,12 @@ namespace trunnion::calibration {
 
 /// One unknown of a solve.
 struct Parameter {
-  std::string name;          ///< in the user's words: "gyro y cross-coupling into z"
+  std::string name;  ///< in the user's words: "gyro y cross-coupling into z"
   Entry kind = Entry::kGyroBias;
-  double refuse_above = 1.0;  ///< 1 sigma beyond which the entry is not worth printing, SI; also its scale in the solver
-  std::string unit;          ///< in which a person reads it
-  double in_unit = 1.0;      ///< SI value times this is the value in that unit
+  double refuse_above =
+      1.0;               ///< 1 sigma beyond which the entry is not worth printing, SI; also its scale in the solver
+  std::string unit;      ///< in which a person reads it
+  double in_unit = 1.0;  ///< SI value times this is the value in that unit
 };
 
 /// A direction in parameter space that the data do not fix.

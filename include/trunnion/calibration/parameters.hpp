@@ -17,39 +17,39 @@ namespace trunnion::calibration {
 
 /// Which terms beyond bias and matrix are estimated.
 struct ModelTerms {
-  bool cubic = true;          ///< of the gyros
+  bool cubic = true;  ///< of the gyros
   bool g_sensitivity = true;
-  bool quadratic = false;     ///< of the accelerometers
+  bool quadratic = false;  ///< of the accelerometers
 };
 
 /// What is asked of the layout.
 struct LayoutRequest {
   ModelTerms terms;
   EntryLimits refuse_above = default_refuse_above();
-  double largest_rate = 1.0;            ///< rad/s, of the data
+  double largest_rate = 1.0;  ///< rad/s, of the data
   int recordings = 1;
   bool bias_per_recording = true;
   bool accel_upper_triangular = false;  ///< by hand: the accelerometers define the frame
   bool rig = true;
-  std::vector<std::string> mounts;      ///< names; the first is the datum
-  std::vector<bool> mount_used;         ///< a mount without a recording has no unknowns
+  std::vector<std::string> mounts;  ///< names; the first is the datum
+  std::vector<bool> mount_used;     ///< a mount without a recording has no unknowns
   bool clock_offset = true;
 };
 
 /// Places in the parameter vector; -1: not estimated.
 struct Layout {
   std::vector<Parameter> parameters;
-  std::vector<int> gyro_bias;   ///< per recording, first of three
+  std::vector<int> gyro_bias;  ///< per recording, first of three
   std::vector<int> accel_bias;
-  int gyro_matrix = -1;         ///< nine, by rows
+  int gyro_matrix = -1;  ///< nine, by rows
   int gyro_cubic = -1;
-  int g_sensitivity = -1;       ///< nine, by rows
+  int g_sensitivity = -1;  ///< nine, by rows
   int accel_matrix[3][3];
   int accel_quadratic = -1;
-  int tilt = -1;                ///< two
+  int tilt = -1;  ///< two
   int heading = -1;
   int nonorthogonality = -1;
-  int eccentricity = -1;        ///< four: azimuth c, s, pitch c, s
+  int eccentricity = -1;         ///< four: azimuth c, s, pitch c, s
   std::vector<int> mount_error;  ///< per mount, first of three
   std::vector<int> lever_arm;
   int clock_offset = -1;

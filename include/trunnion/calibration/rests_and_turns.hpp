@@ -3,10 +3,10 @@
 /// @file
 /// A recording by hand, taken apart: where the unit lay still, and how it turned in between.
 ///
-/// A block of 0.25 s is still when its scatter is near the recording's quietest and its mean rate near the rests' own. A
-/// rest is a second or more of still blocks, without its first and last. What lies between two rests, unbroken in time,
-/// is a turn. Tedaldi, Pretto & Menegatti, ICRA 2014, use a static detector of this kind; docs/theory/calibration.md,
-/// eq. 23.
+/// A block of 0.25 s is still when its scatter is near the recording's quietest and its mean rate near the rests' own.
+/// A rest is a second or more of still blocks, without its first and last. What lies between two rests, unbroken in
+/// time, is a turn. Tedaldi, Pretto & Menegatti, ICRA 2014, use a static detector of this kind;
+/// docs/theory/calibration.md, eq. 23.
 
 #pragma once
 

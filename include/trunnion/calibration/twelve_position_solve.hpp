@@ -8,7 +8,8 @@
 ///
 /// W whitens exactly: a scalar Kalman filter for each sensor carries the wander, and its innovations are the residuals.
 /// The bias of a recording is the constant about which the bias wanders. Windows whose innovation passes four sigmas
-/// lose weight (Huber), in rounds. Covariance and gate come from the same Jacobian. docs/theory/calibration.md, eq. 13-22.
+/// lose weight (Huber), in rounds. Covariance and gate come from the same Jacobian. docs/theory/calibration.md, eq.
+/// 13-22.
 
 #pragma once
 
@@ -31,9 +32,9 @@ struct TableSolveOptions {
   EntryLimits refuse_above = default_refuse_above();
   bool bias_per_recording = true;
   bool estimate_clock_offset = true;
-  double clock_offset = 0.0;      ///< s, where it is not estimated
-  bool noise_from_data = false;   ///< white noise from the rests, wander by restricted maximum likelihood
-  UnitNoise noise;                ///< where it is not from the data
+  double clock_offset = 0.0;             ///< s, where it is not estimated
+  bool noise_from_data = false;          ///< white noise from the rests, wander by restricted maximum likelihood
+  UnitNoise noise;                       ///< where it is not from the data
   std::vector<std::string> mount_names;  ///< one a mount of the rig, for messages
   std::function<void(const std::string&)> progress;  ///< told once a stage; may be empty
 };
@@ -45,16 +46,18 @@ struct TableRecording {
 
 struct Solution {
   CalibrationRecord record;
-  Eigen::VectorXd x;               ///< the unknowns, SI
+  Eigen::VectorXd x;  ///< the unknowns, SI
   std::vector<Parameter> parameters;
-  Observability observability;     ///< its covariance belongs to x; the record holds only what is observable when refused is empty
-  UnitNoise noise;                 ///< used
+  Observability
+      observability;  ///< its covariance belongs to x; the record holds only what is observable when refused is empty
+  UnitNoise noise;    ///< used
   std::vector<std::string> gauge;  ///< directions fixed by definition
 };
 
 /// Solves eq. (2).
 /// @throws Error (input) for an empty problem or a recording that shares no time with its encoders,
 ///         Error (numerics) when the iteration does not converge
-Solution solve_table(const std::vector<TableRecording>& recordings, const Rig& rig, const Site& site, const TableSolveOptions& options);
+Solution solve_table(const std::vector<TableRecording>& recordings, const Rig& rig, const Site& site,
+                     const TableSolveOptions& options);
 
 }  // namespace trunnion::calibration

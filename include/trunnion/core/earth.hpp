@@ -35,7 +35,8 @@ T normal_gravity(const T& latitude, const T& height) {
   constexpr double kM = 0.00344978650684;  // w^2 a^2 b / GM
   const T s2 = sin(latitude) * sin(latitude);
   const T surface = T(kGammaEquator) * (T(1) + T(kK) * s2) / sqrt(T(1) - T(kE2) * s2);
-  return surface * (T(1) - T(2.0 / kA) * (T(1.0 + kF + kM) - T(2.0 * kF) * s2) * height + T(3.0 / (kA * kA)) * height * height);
+  return surface *
+         (T(1) - T(2.0 / kA) * (T(1.0 + kF + kM) - T(2.0 * kF) * s2) * height + T(3.0 / (kA * kA)) * height * height);
 }
 
 /// Earth rate in east-north-up components [rad/s]; @p latitude geodetic [rad].

@@ -25,9 +25,10 @@ namespace trunnion {
 /// The parts of eq. (3).
 template <class T>
 struct TriadGeometry {
-  Vec3<T> scale = Vec3<T>::Zero();               ///< S, relative [-]
-  Mat3<T> nonorthogonality = Mat3<T>::Zero();    ///< T - I, strictly the lower triangle and what unit rows make of it [rad]
-  Vec3<T> installation = Vec3<T>::Zero();        ///< rotation vector of R [rad]
+  Vec3<T> scale = Vec3<T>::Zero();  ///< S, relative [-]
+  Mat3<T> nonorthogonality =
+      Mat3<T>::Zero();                     ///< T - I, strictly the lower triangle and what unit rows make of it [rad]
+  Vec3<T> installation = Vec3<T>::Zero();  ///< rotation vector of R [rad]
 };
 
 template <class T>

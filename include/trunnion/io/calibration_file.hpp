@@ -17,13 +17,13 @@ struct CalibrationFile {
   std::string model;
   std::string serial;
   CalibrationRecord record;
-  std::vector<std::string> mounts;      ///< names, as many as the record has
+  std::vector<std::string> mounts;  ///< names, as many as the record has
   std::vector<std::string> gauge;
   bool within_limits = true;
   std::vector<std::string> out_of_limits;
   std::string tool;
   std::string run;
-  long long seed = -1;                  ///< of a simulation; negative: none
+  long long seed = -1;                                      ///< of a simulation; negative: none
   std::vector<std::pair<std::string, std::string>> inputs;  ///< path and SHA-256
 };
 

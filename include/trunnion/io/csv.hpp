@@ -35,12 +35,13 @@ bool unit_fits(const std::string& quantity, const std::string& unit, std::string
 
 /// Rows of t, three rates and three specific forces into @p sink.
 /// @throws Error (input) naming file, line and column
-void read_imu_csv(const std::string& path, const ColumnMap& columns, const SensorSheet& sheet, SampleSink& sink, std::string& digest);
+void read_imu_csv(const std::string& path, const ColumnMap& columns, const SensorSheet& sheet, SampleSink& sink,
+                  std::string& digest);
 
 /// The same from two files with equal stamps, gyro and accelerometers apart; in both the map's indices count from the
 /// file's own first column, and without a map columns 0 to 3 are t [s], x, y, z in counts.
-void read_split_csv(const std::string& gyro_path, const std::string& accel_path, const ColumnMap& columns, const SensorSheet& sheet,
-                    SampleSink& sink, std::string& gyro_digest, std::string& accel_digest);
+void read_split_csv(const std::string& gyro_path, const std::string& accel_path, const ColumnMap& columns,
+                    const SensorSheet& sheet, SampleSink& sink, std::string& gyro_digest, std::string& accel_digest);
 
 /// Rows of t, azimuth and pitch into @p sink.
 void read_encoder_csv(const std::string& path, const ColumnMap& columns, SampleSink& sink, std::string& digest);

@@ -25,8 +25,8 @@ struct LcmEvent {
   std::int64_t number = 0;
   std::int64_t timestamp = 0;  ///< us, of the logger
   std::string_view channel;
-  std::string_view data;       ///< valid until the next call of next()
-  std::int64_t byte = 0;       ///< offset of the record in the file
+  std::string_view data;  ///< valid until the next call of next()
+  std::int64_t byte = 0;  ///< offset of the record in the file
 };
 
 class LcmLogReader {

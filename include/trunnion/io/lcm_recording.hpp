@@ -73,8 +73,8 @@ using Progress = std::function<void(double fraction)>;
 /// are passed over.
 /// @param need_encoder whether a log without encoder readings is refused
 /// @throws Error (input) for a missing, empty or useless log, another type's fingerprint, or values that are not finite
-LcmLosses read_lcm_recording(const std::string& path, const LcmChannels& channels, bool need_encoder, SampleSink& sink, Sha256* digest = nullptr,
-                             const Progress& progress = {});
+LcmLosses read_lcm_recording(const std::string& path, const LcmChannels& channels, bool need_encoder, SampleSink& sink,
+                             Sha256* digest = nullptr, const Progress& progress = {});
 
 /// Encodes one message of type imu_t, or encoder_t with two axes, into @p out (cleared first).
 void encode_imu(std::int64_t utime, std::int64_t sequence, const InertialSample<double>& sample, std::string& out);

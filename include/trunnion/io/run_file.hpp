@@ -18,12 +18,12 @@ namespace trunnion::io {
 
 /// Where one recording lies; paths are resolved against the run file.
 struct RecordingFiles {
-  int line = 0;           ///< of the run file
-  std::string mount;      ///< empty by hand
-  std::string lcm;        ///< an LCM log, or empty
-  std::string imu;        ///< a CSV, or empty
+  int line = 0;       ///< of the run file
+  std::string mount;  ///< empty by hand
+  std::string lcm;    ///< an LCM log, or empty
+  std::string imu;    ///< a CSV, or empty
   std::string encoder;
-  std::string gyro;       ///< gyro and accelerometers in files of their own, or empty
+  std::string gyro;  ///< gyro and accelerometers in files of their own, or empty
   std::string accel;
 
   /// For messages: the first file.
@@ -39,7 +39,7 @@ struct EntryVerdict {
 struct RunFile {
   std::string path;
   Site site;
-  std::string rig;         ///< URDF, or empty: by hand
+  std::string rig;  ///< URDF, or empty: by hand
   std::string outer_axis = "azimuth";
   std::string inner_axis = "pitch";
   std::string sheet_path;  ///< or empty

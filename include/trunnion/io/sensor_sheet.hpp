@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the trunnion authors
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The sensor sheet: ranges, noise and nominal scale of a unit, as its data sheet states them (docs/reference/files.md).
+/// The sensor sheet: ranges, noise and nominal scale of a unit, as its data sheet states them
+/// (docs/reference/files.md).
 
 #pragma once
 
@@ -23,7 +24,7 @@ struct SensorSheet {
   double gyro_range = 0.0;   ///< rad/s; 0: not stated
   double accel_range = 0.0;  ///< m/s^2; 0: not stated
   UnitNoise noise;
-  bool has_noise = false;    ///< both triads state their noise
+  bool has_noise = false;  ///< both triads state their noise
   NominalScale gyro_counts;
   NominalScale accel_counts;
 };

@@ -21,7 +21,9 @@ struct RigFile {
 
 /// Reads a rig. Only the mounts in @p wanted are kept, in that order; empty: all of them.
 /// @throws Error (input) for what urdfdom refuses and for what it lets through: limits upside down, a zero axis, a link
-///         with two parents, a second robot, axes that are parallel, a mount that is not there or not fixed to the pitch stage
-RigFile read_rig(const std::string& path, const std::string& outer_axis, const std::string& inner_axis, const std::vector<std::string>& wanted = {});
+///         with two parents, a second robot, axes that are parallel, a mount that is not there or not fixed to the
+///         pitch stage
+RigFile read_rig(const std::string& path, const std::string& outer_axis, const std::string& inner_axis,
+                 const std::vector<std::string>& wanted = {});
 
 }  // namespace trunnion::io

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The kinds of entries of a calibration, as files name them: the keys of `refuse_above` and `limits`, their units, and
-/// the posterior sigma beyond which an entry is refused unless the run file says otherwise: about a twentieth of what an
-/// uncalibrated MEMS unit may have.
+/// the posterior sigma beyond which an entry is refused unless the run file says otherwise: about a twentieth of what
+/// an uncalibrated MEMS unit may have.
 
 #pragma once
 

@@ -10,8 +10,8 @@
 ///
 ///   sum_k weight_k g(t + half_width x_k) = 1/(n P) sum_i integral from t_i - P to t_i of g(s) ds         ... (1)
 ///
-/// x_k: Gauss-Legendre nodes of order 5. A turn of 50 deg/s sweeps 5 deg in 0.1 s: the error of (1) is then below 1e-12.
-/// docs/theory/calibration.md, eq. 13-15.
+/// x_k: Gauss-Legendre nodes of order 5. A turn of 50 deg/s sweeps 5 deg in 0.1 s: the error of (1) is then below
+/// 1e-12. docs/theory/calibration.md, eq. 13-15.
 
 #pragma once
 
@@ -23,8 +23,8 @@
 namespace trunnion {
 
 inline constexpr int kWindowNodes = 5;
-inline constexpr std::array<double, kWindowNodes> kNodeAbscissa = {-0.90617984593866399280, -0.53846931010568309104, 0.0,
-                                                                   0.53846931010568309104, 0.90617984593866399280};
+inline constexpr std::array<double, kWindowNodes> kNodeAbscissa = {-0.90617984593866399280, -0.53846931010568309104,
+                                                                   0.0, 0.53846931010568309104, 0.90617984593866399280};
 
 struct ObservationWindow {
   double t = 0.0;           ///< middle, on the unit's clock [s]

@@ -26,9 +26,18 @@ struct Position {
 };
 
 inline constexpr std::array<Position, 12> kTwelvePositions = {{
-    {0, kAzimuth, +1}, {0, kAzimuth, -1}, {0, kPitch, +1}, {0, kPitch, -1},
-    {1, kAzimuth, +1}, {1, kAzimuth, -1}, {1, kPitch, +1}, {1, kPitch, -1},
-    {2, kAzimuth, +1}, {2, kAzimuth, -1}, {2, kPitch, +1}, {2, kPitch, -1},
+    {0, kAzimuth, +1},
+    {0, kAzimuth, -1},
+    {0, kPitch, +1},
+    {0, kPitch, -1},
+    {1, kAzimuth, +1},
+    {1, kAzimuth, -1},
+    {1, kPitch, +1},
+    {1, kPitch, -1},
+    {2, kAzimuth, +1},
+    {2, kAzimuth, -1},
+    {2, kPitch, +1},
+    {2, kPitch, -1},
 }};
 
 /// C_pb of the cyclic mount @p mount (0, 1, 2): case x, y, z lie along p-axes (0, 1, 2), (2, 0, 1), (1, 2, 0).

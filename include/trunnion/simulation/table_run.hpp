@@ -32,21 +32,21 @@ struct TableRunSettings {
   double gyro_quantum = 0.0;    ///< rad/s a count; 0: not quantised
   double accel_quantum = 0.0;   ///< m/s^2 a count
 
-  double gyro_bias, gyro_turn_on_bias;    ///< rad/s
+  double gyro_bias, gyro_turn_on_bias;     ///< rad/s
   double gyro_scale, gyro_cross_coupling;  ///< -, rad
   double gyro_cubic;                       ///< s^2/rad^2
   double gyro_g_sensitivity;               ///< (rad/s)/(m/s^2)
   double accel_bias, accel_turn_on_bias;   ///< m/s^2
   double accel_scale, accel_cross_coupling;
-  double accel_quadratic = 0.0;            ///< s^2/m
+  double accel_quadratic = 0.0;  ///< s^2/m
 
   double tilt, nonorthogonality, mount_error, eccentricity;  ///< rad
-  double lever_arm;                        ///< m, length; direction at random in each mount
-  double largest_clock_offset;             ///< s, uniform on both sides
+  double lever_arm;                                          ///< m, length; direction at random in each mount
+  double largest_clock_offset;                               ///< s, uniform on both sides
 
-  double outlier_fraction = 0.0;           ///< of the samples
-  double gyro_outlier = 1.0;               ///< rad/s
-  double accel_outlier = 5.0;              ///< m/s^2
+  double outlier_fraction = 0.0;  ///< of the samples
+  double gyro_outlier = 1.0;      ///< rad/s
+  double accel_outlier = 5.0;     ///< m/s^2
   double dropped_fraction = 0.0;
 
   /// A MEMS unit of the grade of the 3DM-CV7 on a good table.
@@ -79,7 +79,7 @@ struct TableSinks {
 };
 
 /// Runs recording @p index with the unit in @p mount and feeds the sinks in order of time.
-void run_table(const TableRunSettings& settings, const CalibrationValues& truth, const Rig& rig, const Site& site, const TableMotion& motion,
-               int mount, int index, const TableSinks& sinks);
+void run_table(const TableRunSettings& settings, const CalibrationValues& truth, const Rig& rig, const Site& site,
+               const TableMotion& motion, int mount, int index, const TableSinks& sinks);
 
 }  // namespace trunnion::simulation

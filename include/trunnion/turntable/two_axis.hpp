@@ -32,8 +32,8 @@ enum Axis : int { kAzimuth = 0, kPitch = 1 };
 struct TwoAxisGeometry {
   Mat3<double> C_to = Mat3<double>::Identity();
   Mat3<double> C_qp = Mat3<double>::Identity();
-  double nonorthogonality = 0.0;                           ///< i0 [rad]
-  Vec3<double> pitch_joint_o = Vec3<double>::Zero();       ///< from any point of the azimuth axis to the pitch joint [m]
+  double nonorthogonality = 0.0;                      ///< i0 [rad]
+  Vec3<double> pitch_joint_o = Vec3<double>::Zero();  ///< from any point of the azimuth axis to the pitch joint [m]
 
   /// From a kinematic chain: the azimuth joint's origin rotation in t and its axis, the pitch joint's origin rotation
   /// and position in the azimuth link and its axis. Axes are unit vectors.
@@ -74,7 +74,10 @@ class TwoAxisTable {
  public:
   /// @param latitude geodetic [rad]; @param gravity [m/s^2], positive down
   TwoAxisTable(const TwoAxisGeometry& rig, const TwoAxisErrors<T>& errors, double latitude, const T& gravity)
-      : errors_(errors), C_qp_(rig.C_qp), p_is_q_(rig.C_qp.isIdentity(0.0)), has_joint_offset_(rig.pitch_joint_o.head<2>().squaredNorm() > 0.0) {
+      : errors_(errors),
+        C_qp_(rig.C_qp),
+        p_is_q_(rig.C_qp.isIdentity(0.0)),
+        has_joint_offset_(rig.pitch_joint_o.head<2>().squaredNorm() > 0.0) {
     using std::cos;
     using std::sin;
     const Mat3<T> C_ut = base_attitude();
@@ -100,10 +103,8 @@ class TwoAxisTable {
     const T ca = cos(a.angle);
     const T sp = sin(p.angle);
     const T cp = cos(p.angle);
-    const auto o_to_q = [&](const Vec3<T>& v) {
-      return turn_about_y<T>(-sp, cp, turn_about_x<T>(-sin_i_, cos_i_, v));
-    };
-    const Vec3<T> axis_q(-sp * cos_i_, sin_i_, cp * cos_i_);         // azimuth axis in q
+    const auto o_to_q = [&](const Vec3<T>& v) { return turn_about_y<T>(-sp, cp, turn_about_x<T>(-sin_i_, cos_i_, v)); };
+    const Vec3<T> axis_q(-sp * cos_i_, sin_i_, cp * cos_i_);                     // azimuth axis in q
     const Vec3<T> axis_rate_q(-p.rate * axis_q.z(), T(0), p.rate * axis_q.x());  // its time derivative
     const Vec3<T> w_ie_turned_o = turn_about_z<T>(-sa, ca, w_ie_o_);
     const Vec3<T> w_ie_q = o_to_q(w_ie_turned_o);
@@ -115,7 +116,8 @@ class TwoAxisTable {
     w_dot_q.y() += p.acceleration;
 
     const Vec3<T> lever_q = p_is_q_ ? lever_p : Vec3<T>(C_qp_.template cast<T>() * lever_p);
-    Vec3<T> f_q = o_to_q(turn_about_z<T>(-sa, ca, reaction_o_)) + w_dot_q.cross(lever_q) + w_iq_q.cross(w_iq_q.cross(lever_q));
+    Vec3<T> f_q =
+        o_to_q(turn_about_z<T>(-sa, ca, reaction_o_)) + w_dot_q.cross(lever_q) + w_iq_q.cross(w_iq_q.cross(lever_q));
     if (has_joint_offset_) {
       Vec3<T> w_io_o = w_ie_turned_o;
       w_io_o.z() += a.rate;
