@@ -38,14 +38,14 @@ void EncoderCourse::add(double t, double azimuth, double pitch) {
   }
   unwrapped_ = {azimuth, pitch};
   if (readings_ >= 3 && t - previous_t_[0] < 3.5 * (previous_t_[2] - previous_t_[1])) {
-    for (int axis = 0; axis < 2; ++axis) {
+    for (std::size_t axis = 0; axis < 2; ++axis) {
       const auto& p = previous_[axis];
       const double d = unwrapped_[axis] - 3.0 * p[2] + 3.0 * p[1] - p[0];
       third_difference_sum_ += d * d;
     }
     third_differences_ += 2;
   }
-  for (int axis = 0; axis < 2; ++axis) previous_[axis] = {previous_[axis][1], previous_[axis][2], unwrapped_[axis]};
+  for (std::size_t axis = 0; axis < 2; ++axis) previous_[axis] = {previous_[axis][1], previous_[axis][2], unwrapped_[axis]};
   previous_t_ = {previous_t_[1], previous_t_[2], t};
   ++readings_;
   t_last_ = t;

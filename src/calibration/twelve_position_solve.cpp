@@ -104,7 +104,7 @@ class TableProblem {
  public:
   TableProblem(const std::vector<TableRecording>& recordings, const Rig& rig, const Site& site,
                const TableSolveOptions& options)
-      : recordings_(recordings), rig_(rig), site_(site), options_(options), layout_(request()) {
+      : recordings_(recordings), rig_(rig), options_(options), layout_(request()) {
     start_.gravity = site.gravity;
     start_.clock_offset = options.clock_offset;
     for (std::size_t m = 0; m < kMaxMounts; ++m) start_.lever_arm[m] = rig.mount[m].lever_p;
@@ -366,7 +366,6 @@ class TableProblem {
 
   const std::vector<TableRecording>& recordings_;
   const Rig& rig_;
-  const Site& site_;
   const TableSolveOptions& options_;
   Layout layout_;
   CalibrationValues start_;  // and, after each minimise(), the current estimate

@@ -111,7 +111,6 @@ class Compressor {
   double t_first_ = 0.0;
   double t_last_ = 0.0;
   double t_window_end_ = 0.0;
-  long long window_index_ = 0;
 
   struct Early {
     double t;

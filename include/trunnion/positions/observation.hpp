@@ -16,6 +16,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 
 #include "trunnion/core/linear.hpp"
 #include "trunnion/error_model/inertial_unit.hpp"
@@ -37,19 +38,19 @@ struct ObservationWindow {
 /// Weights of eq. (1) from the moments m_j = mean of x^j over the covering, j = 0..4, x = (s - t) / half_width.
 inline std::array<double, kWindowNodes> quadrature_weights(const std::array<double, kWindowNodes>& moment) {
   std::array<double, kWindowNodes> weight{};
-  for (int k = 0; k < kWindowNodes; ++k) {
+  for (std::size_t k = 0; k < weight.size(); ++k) {
     // the Lagrange polynomial of node k, as coefficients of x^j, against the moments
     std::array<double, kWindowNodes> c{1.0};
-    int degree = 0;
+    std::size_t degree = 0;
     double scale = 1.0;
-    for (int other = 0; other < kWindowNodes; ++other) {
+    for (std::size_t other = 0; other < weight.size(); ++other) {
       if (other == k) continue;
       ++degree;
-      for (int j = degree; j > 0; --j) c[j] = c[j - 1] - kNodeAbscissa[other] * c[j];
+      for (std::size_t j = degree; j > 0; --j) c[j] = c[j - 1] - kNodeAbscissa[other] * c[j];
       c[0] *= -kNodeAbscissa[other];
       scale *= kNodeAbscissa[k] - kNodeAbscissa[other];
     }
-    for (int j = 0; j < kWindowNodes; ++j) weight[k] += c[j] * moment[j];
+    for (std::size_t j = 0; j < weight.size(); ++j) weight[k] += c[j] * moment[j];
     weight[k] /= scale;
   }
   return weight;
