@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "command.hpp"
+#include "recordings.hpp"
 #include "terminal.hpp"
 #include "trunnion/error_model/inertial_unit.hpp"
 #include "trunnion/io/calibration_file.hpp"
@@ -46,29 +47,33 @@ class Corrected final : public io::SampleSink {
 long long apply_to_log(const Options& o, const UnitCorrection<double>& correction) {
   io::LcmLogReader log(o.input);
   io::LcmLogWriter out(o.output);
-  std::string message;
-  std::int64_t sequence = 0;
-  std::int64_t timestamp = 0;
-  Corrected sink(correction, [&](std::int64_t utime, const InertialSample<double>& sample) {
-    io::encode_imu(utime, sequence++, sample, message);
-    out.write(timestamp, o.channel, message);
-  });
+  std::vector<InertialSample<double>> corrected;
+  Corrected sink(correction, [&](std::int64_t, const InertialSample<double>& sample) { corrected.push_back(sample); });
   io::LcmDecoder decoder(o.input, sink);
   io::LcmEvent event;
+  std::string message;
   while (log.next(event)) {
-    timestamp = event.timestamp;
-    if (event.channel == o.channel) {
-      sequence = decoder.imu(event);
-    } else {
+    if (event.channel != o.channel) {
       out.write(event.timestamp, event.channel, event.data);
+      continue;
     }
+    corrected.clear();
+    decoder.imu(event);
+    if (corrected.empty()) continue;  // damaged, and counted
+    message = event.data;             // stamps, sequence and temperature stay
+    io::replace_samples(corrected, message);
+    out.write(event.timestamp, event.channel, message);
   }
   decoder.finish();
-  if (sink.samples() == 0)
+  if (sink.samples() == 0) {
     throw io::input_error(o.input, 0, "", "no usable message on the IMU channel '" + o.channel + "'");
+  }
   out.commit();
-  if (log.lost_bytes() > 0)
-    std::fprintf(stderr, "%lld damaged records, %lld bytes passed over\n", log.lost_records(), log.lost_bytes());
+  const long long records = log.lost_records() + decoder.damaged().records;
+  if (records > 0) {
+    std::fprintf(stderr, "%lld damaged records, %lld bytes passed over\n", records,
+                 log.lost_bytes() + decoder.damaged().bytes);
+  }
   return sink.samples();
 }
 
@@ -100,9 +105,7 @@ void apply(const Options& o) {
     unit.gyro.bias = bias.w;
     unit.accel.bias = bias.f;
   }
-  std::error_code error;
-  if (std::filesystem::equivalent(o.input, o.output, error))
-    throw Error(ExitCode::kUsage, "input and output are the same file");
+  keep_inputs(o.output, {o.input, o.calibration});
   const UnitCorrection<double> correction(unit);
   const bool csv = std::filesystem::path(o.input).extension() == ".csv";
   const long long samples = csv ? apply_to_csv(o, correction) : apply_to_log(o, correction);

@@ -101,6 +101,12 @@ std::vector<Difference> differences(const io::CalibrationFile& a, const io::Cali
 ExitCode compare(const Options& o) {
   const io::CalibrationFile first = io::read_calibration_file(o.first);
   const io::CalibrationFile second = io::read_calibration_file(o.second);
+  if (first.gauge != second.gauge) {
+    throw Error(
+        ExitCode::kInput,
+        o.first + ", " + o.second +
+            ": different gauges, so the same unit has other numbers in each: solve both with the same first mount");
+  }
   const std::vector<Difference> all = differences(first, second);
   if (all.empty())
     throw Error(ExitCode::kInput,
@@ -129,7 +135,7 @@ ExitCode compare(const Options& o) {
                                  {"unit", d.unit},
                                  {"sigmas", d.sigmas()}});
     }
-    std::printf("%s\n", tree.dump(2).c_str());
+    std::printf("%s\n", tree.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace).c_str());
   } else {
     std::printf("%-40s %14s %14s %12s %8s  %s\n", "entry", "first", "second", "1 sigma", "sigmas", "unit");
     for (const Difference& d : all) {

@@ -48,7 +48,8 @@ class ChannelStatistics {
       lowest_.assign(values);
       highest_.assign(values);
     } else {
-      steps_.push_back(static_cast<float>(1e-6 * static_cast<double>(utime - last_)));
+      steps_.push_back(
+          static_cast<float>(1e-6 * static_cast<double>(calibration::ChannelClock::difference(utime, last_))));
     }
     last_ = utime;
     ++messages_;
@@ -89,7 +90,7 @@ class ChannelStatistics {
                  {"longest_gap_s", longest},
                  {"duplicates", duplicates_},
                  {"stray_stamps", stray_},
-                 {"duration_s", 1e-6 * static_cast<double>(last_ - first_)}};
+                 {"duration_s", 1e-6 * static_cast<double>(calibration::ChannelClock::difference(last_, first_))}};
     for (std::size_t i = 0; i < names.size() && i < lowest_.size(); ++i) {
       json["range"][names[i]] = {lowest_[i] * in_unit, highest_[i] * in_unit};
     }
@@ -219,7 +220,7 @@ void inspect(const Options& o) {
     all["recordings"].push_back(inspect_recording(run, files));
   }
   if (o.format == "json") {
-    std::printf("%s\n", all.dump(2).c_str());
+    std::printf("%s\n", all.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace).c_str());
   } else {
     print_text(all);
   }

@@ -37,7 +37,7 @@ ExitCode run_command(std::vector<std::string> arguments) {
     std::fprintf(stderr, "imu_calibrate: a defect of ours, please report it: %s\n", e.what());
     return ExitCode::kDefect;
   }
-  if (std::fflush(stdout) != 0) {
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
     std::fprintf(stderr, "imu_calibrate: cannot write the result to standard output\n");
     return ExitCode::kInput;
   }

@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
+#include <filesystem>
 #include <mutex>
 #include <thread>
 
 #include "terminal.hpp"
+#include "trunnion/core/error.hpp"
 
 namespace trunnion::app {
 namespace {
@@ -90,6 +92,15 @@ void collect(RunInputs& inputs, std::vector<RunInputs>& each) {
 }
 
 }  // namespace
+
+void keep_inputs(const std::string& output, const std::vector<std::string>& inputs) {
+  for (const std::string& input : inputs) {
+    std::error_code error;
+    if (std::filesystem::equivalent(input, output, error)) {
+      throw Error(ExitCode::kUsage, output + ": the output is the same file as an input");
+    }
+  }
+}
 
 std::vector<calibration::TableRecording> read_table_recordings(const io::RunFile& run,
                                                                const std::vector<std::string>& mounts,

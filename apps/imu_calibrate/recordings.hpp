@@ -21,6 +21,9 @@ struct RunInputs {
   io::LcmLosses losses;
 };
 
+/// Refuses (usage) an output that is one of the inputs: they are raw data.
+void keep_inputs(const std::string& output, const std::vector<std::string>& inputs);
+
 /// Reads and compresses every recording, on as many threads as the machine has. @p mounts: names, in the rig's order
 std::vector<calibration::TableRecording> read_table_recordings(const io::RunFile& run,
                                                                const std::vector<std::string>& mounts,

@@ -94,7 +94,7 @@ void simulate(const Options& o) {
   file.record.recordings = rig.rig.mounts;
   for (int m = 0; m < rig.rig.mounts; ++m) file.record.recording_mount[static_cast<std::size_t>(m)] = m;
   file.mounts = rig.mounts;
-  file.gauge = {"truth"};
+  file.gauge = {"pitch_encoder_zero", rig.mounts.front() + "_datum"};
   file.tool = tool_name() + " simulate";
   file.run = "run.yaml";
   file.seed = static_cast<long long>(o.seed);

@@ -30,7 +30,8 @@ void judge_limits(const io::RunFile& run, const calibration::Solution& solution,
   for (std::size_t i = 0; i < solution.parameters.size(); ++i) {
     const calibration::Parameter& p = solution.parameters[i];
     const io::EntryVerdict& limit = run.limits[static_cast<std::size_t>(p.kind)];
-    if (p.unit != kind_of(p.kind).unit) continue;  // gravity is no entry of the unit
+    if (p.unit != kind_of(p.kind).unit || p.name == "heading")
+      continue;  // gravity and heading are no entries of a verdict
     const auto at = static_cast<Eigen::Index>(i);
     const double value = solution.x(at) * p.in_unit;
     const double sigma = std::sqrt(solution.observability.covariance(at, at)) * p.in_unit;
@@ -113,6 +114,11 @@ ExitCode solve(const Options& o) {
   const io::RunFile run = io::read_run_file(o.run);
   if (o.hold_out != 0 && !run.rig.empty())
     throw Error(ExitCode::kUsage, "--hold-out is for runs by hand: this run has a rig");
+  std::vector<std::string> sources = {o.run, run.rig, run.sheet_path};
+  for (const io::RecordingFiles& files : run.recordings) {
+    sources.insert(sources.end(), {files.lcm, files.imu, files.encoder, files.gyro, files.accel});
+  }
+  keep_inputs(o.output, sources);
   RunInputs inputs;
   io::CalibrationFile file;
   std::vector<double> held_out;

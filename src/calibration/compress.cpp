@@ -20,7 +20,8 @@ constexpr double kHarmless =
     1e-5;  // of the triad's largest reading in the window: one such sample costs 0.3 ppm of the window
 constexpr double kRunningWeight = 0.05;
 constexpr double kSaturatedFraction = 1e-3;
-constexpr double kSlowestPeriod = 0.1;  // s
+constexpr double kPeriodTolerance = 0.02;  // of the sheet's period
+constexpr double kSlowestPeriod = 0.1;     // s
 
 double median_of_five(double a, double b, double c, double d, double e) {
   if (a > b) std::swap(a, b);
@@ -39,8 +40,7 @@ double median_of_five(double a, double b, double c, double d, double e) {
 Compressor::Compressor(CompressOptions options) : options_(std::move(options)) {
   result_.name = options_.name;
   quantum_.fill(std::numeric_limits<double>::infinity());
-  if (options_.period <= 0.0) early_.reserve(kSamplesForPeriod);
-  result_.figures.period = options_.period;
+  early_.reserve(kSamplesForPeriod);
 }
 
 double Compressor::seconds(std::int64_t utime) {
@@ -48,7 +48,6 @@ double Compressor::seconds(std::int64_t utime) {
     has_origin_ = true;
     origin_ = utime;
   }
-  // unsigned, so that hostile stamps wrap and do not overflow
   return 1e-6 * static_cast<double>(
                     static_cast<std::int64_t>(static_cast<std::uint64_t>(utime) - static_cast<std::uint64_t>(origin_)));
 }
@@ -85,7 +84,11 @@ void Compressor::imu(std::int64_t utime, const InertialSample<double>& sample) {
   for (std::size_t i = 1; i < early_.size(); ++i) scratch_.push_back(early_[i].t - early_[i - 1].t);
   const auto middle = scratch_.begin() + static_cast<std::ptrdiff_t>(scratch_.size() / 2);
   std::nth_element(scratch_.begin(), middle, scratch_.end());
-  result_.figures.period = *middle;
+  if (options_.period > 0.0 && std::abs(*middle / options_.period - 1.0) > kPeriodTolerance) {
+    throw Error(ExitCode::kInput, options_.name + ": the samples come at " + std::to_string(1.0 / *middle) +
+                                      " Hz, the sheet's rate_hz says " + std::to_string(1.0 / options_.period));
+  }
+  result_.figures.period = options_.period > 0.0 ? options_.period : *middle;
   for (const Early& e : early_) place(e.t, e.sample);
   early_ = {};
 }

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
+#include "trunnion/core/error.hpp"
 #include "trunnion/core/units.hpp"
 
 namespace trunnion::calibration {
@@ -14,6 +16,11 @@ namespace {
 constexpr std::size_t kReadingsForPeriod = 64;
 constexpr double kShortestKnotSpacing = 0.0235;  // s
 constexpr double kPeriodsPerKnot = 4.7;
+constexpr double kOutlierFactor = 20.0;
+constexpr double kRunningWeight = 0.01;
+constexpr double kLargestAcceleration = 20.0;  // rad/s^2, of a table
+constexpr std::size_t kRowsPerReading = 50;    // bounds the memory that leaping stamps can ask for
+constexpr std::size_t kRowsAtLeast = 100000;
 // Weight of the third differences against one reading: bridges the holes with a parabola, biases nothing measurable.
 constexpr double kSmoothing = 1e-7;
 constexpr std::array<double, 4> kThirdDifference = {-1.0, 3.0, -3.0, 1.0};
@@ -31,11 +38,42 @@ double nearest_turn(double angle, double reference) {
 }  // namespace
 
 void EncoderCourse::add(double t, double azimuth, double pitch) {
-  if (readings_ > 0) {
+  if (waiting_ > 0) {
     // std::round costs more than the rest of this function: only at a wrap
-    if (std::abs(azimuth - unwrapped_[0]) > kPi) azimuth = nearest_turn(azimuth, unwrapped_[0]);
-    if (std::abs(pitch - unwrapped_[1]) > kPi) pitch = nearest_turn(pitch, unwrapped_[1]);
+    const Reading& last = recent_[waiting_ - 1];
+    if (std::abs(azimuth - last.azimuth) > kPi) azimuth = nearest_turn(azimuth, last.azimuth);
+    if (std::abs(pitch - last.pitch) > kPi) pitch = nearest_turn(pitch, last.pitch);
   }
+  recent_[waiting_++] = {t, azimuth, pitch};
+  if (waiting_ == recent_.size()) settle();
+}
+
+/// Passes on the oldest of three readings, and drops the middle one when it departs from what its neighbours say by
+/// more than the table can accelerate in between.
+void EncoderCourse::settle() {
+  const auto& [a, b, c] = recent_;
+  const double span = c.t - a.t;
+  const double u = (b.t - a.t) / span;
+  const double departure = std::max(std::abs(b.azimuth - a.azimuth - u * (c.azimuth - a.azimuth)),
+                                    std::abs(b.pitch - a.pitch - u * (c.pitch - a.pitch)));
+  if (departure > kOutlierFactor * usual_departure_ + kLargestAcceleration * span * span) {
+    ++outliers_;
+    recent_[1] = recent_[2];
+    // it was unwrapped against the one that goes
+    if (std::abs(recent_[1].azimuth - a.azimuth) > kPi)
+      recent_[1].azimuth = nearest_turn(recent_[1].azimuth, a.azimuth);
+    if (std::abs(recent_[1].pitch - a.pitch) > kPi) recent_[1].pitch = nearest_turn(recent_[1].pitch, a.pitch);
+    waiting_ = 2;
+    return;
+  }
+  usual_departure_ += kRunningWeight * (departure - usual_departure_);
+  take(a.t, a.azimuth, a.pitch);
+  recent_[0] = recent_[1];
+  recent_[1] = recent_[2];
+  waiting_ = 2;
+}
+
+void EncoderCourse::take(double t, double azimuth, double pitch) {
   unwrapped_ = {azimuth, pitch};
   if (readings_ >= 3 && t - previous_t_[0] < 3.5 * (previous_t_[2] - previous_t_[1])) {
     for (std::size_t axis = 0; axis < 2; ++axis) {
@@ -45,7 +83,8 @@ void EncoderCourse::add(double t, double azimuth, double pitch) {
     }
     third_differences_ += 2;
   }
-  for (std::size_t axis = 0; axis < 2; ++axis) previous_[axis] = {previous_[axis][1], previous_[axis][2], unwrapped_[axis]};
+  for (std::size_t axis = 0; axis < 2; ++axis)
+    previous_[axis] = {previous_[axis][1], previous_[axis][2], unwrapped_[axis]};
   previous_t_ = {previous_t_[1], previous_t_[2], t};
   ++readings_;
   t_last_ = t;
@@ -74,6 +113,10 @@ void EncoderCourse::start() {
 void EncoderCourse::accumulate(double t, double azimuth, double pitch) {
   const double u = (t - t0_) / h_;
   const auto k = static_cast<std::size_t>(u);
+  if (k > kRowsPerReading * readings_ + kRowsAtLeast) {
+    throw Error(ExitCode::kInput, "the encoder's stamps leave holes for " + std::to_string(k) + " knots in " +
+                                      std::to_string(readings_) + " readings");
+  }
   if (rows_.size() < k + 4) rows_.resize(k + 4);
   const std::array<double, 4> b = basis(u - static_cast<double>(k));
   Row* row = &rows_[k];
@@ -86,6 +129,8 @@ void EncoderCourse::accumulate(double t, double azimuth, double pitch) {
 }
 
 void EncoderCourse::finish() {
+  for (std::size_t i = 0; i < waiting_; ++i) take(recent_[i].t, recent_[i].azimuth, recent_[i].pitch);
+  waiting_ = 0;
   if (!started_) start();
   const std::size_t n = rows_.size();
   gap_.assign(n, 0);

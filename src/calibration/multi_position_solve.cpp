@@ -29,7 +29,7 @@ constexpr double kFlatHeadingSigma = kPi / 1.7320508075688772;
 /// The unit that the scaled unknowns @p x describe.
 template <class T>
 InertialUnit<T> unit_from(const Layout& layout, const T* x, std::size_t recording) {
-  const auto value = [&](int i) { return x[i] * T(layout.parameters[static_cast<std::size_t>(i)].refuse_above); };
+  const auto value = [&](int i) { return x[i] * T(layout.parameters[static_cast<std::size_t>(i)].scale); };
   InertialUnit<T> unit;
   for (int i = 0; i < 3; ++i) {
     unit.gyro.bias(i) = value(layout.gyro_bias[recording] + i);
@@ -97,7 +97,7 @@ TurnRotation integrate(const Turn& turn, const InertialUnit<double>& unit, const
   rotation.J = Eigen::Matrix<double, 3, Eigen::Dynamic>::Zero(3, layout->size());
   const Mat3<double> C_end = rotation.q.conjugate().toRotationMatrix();
   const auto set = [&](int place, const Vec3<double>& column) {
-    rotation.J.col(place) = C_end * column * layout->parameters[static_cast<std::size_t>(place)].refuse_above;
+    rotation.J.col(place) = C_end * column * layout->parameters[static_cast<std::size_t>(place)].scale;
   };
   for (int i = 0; i < 3; ++i) {
     set(layout->gyro_bias[recording] + i, of_bias.col(i));
@@ -125,7 +125,7 @@ struct RestResidual {
     const InertialUnit<T> unit = unit_from(*layout, parameters[0], recording);
     const Eigen::Map<const Quaternion<T>> q_ub(parameters[1]);
     const T gravity =
-        parameters[0][layout->gravity] * T(layout->parameters[static_cast<std::size_t>(layout->gravity)].refuse_above);
+        parameters[0][layout->gravity] * T(layout->parameters[static_cast<std::size_t>(layout->gravity)].scale);
     InertialSample<T> input;
     input.f = q_ub.conjugate() * Vec3<T>(T(0), T(0), gravity);
     input.w = q_ub.conjugate() * w_ie_u.cast<T>();
@@ -257,7 +257,7 @@ class HandProblem {
     return noise;
   }
 
-  [[nodiscard]] double scale(int i) const { return layout_.parameters[static_cast<std::size_t>(i)].refuse_above; }
+  [[nodiscard]] double scale(int i) const { return layout_.parameters[static_cast<std::size_t>(i)].scale; }
 
   /// Biases from the rests, attitudes from gravity and the turns.
   void start() {

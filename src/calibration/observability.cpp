@@ -49,8 +49,14 @@ Observability judge(const Eigen::MatrixXd& information, const std::vector<Parame
   covariance.noalias() = directions * directions.transpose();
 
   std::vector<bool> blamed(static_cast<std::size_t>(n), false);
+  const auto in_lost_direction = [&](Eigen::Index i) {
+    for (Eigen::Index j = 0; j < n && lambda(j) <= floor; ++j) {  // in increasing order
+      if (std::abs(directions(i, j)) > kShareOfDirection * directions.col(j).cwiseAbs().maxCoeff()) return true;
+    }
+    return false;
+  };
   for (Eigen::Index i = 0; i < n; ++i) {
-    if (covariance(i, i) <= 1.0) continue;
+    if (covariance(i, i) <= 1.0 && !in_lost_direction(i)) continue;
     const Parameter& p = parameters[static_cast<std::size_t>(i)];
     double lost = 0.0;
     for (Eigen::Index j = 0; j < n; ++j) {
@@ -59,13 +65,13 @@ Observability judge(const Eigen::MatrixXd& information, const std::vector<Parame
       if (lambda(j) <= floor) lost += share;
     }
     const std::string sigma =
-        lost > 0.5 || covariance(i, i) > kHopeless
+        lost > 0.5 || in_lost_direction(i) || covariance(i, i) > kHopeless
             ? "undetermined"
             : "1 sigma " + figure(std::sqrt(covariance(i, i)) * p.refuse_above * p.in_unit) + " " + p.unit;
     result.refused.push_back(p.name + ": " + sigma + ", limit " + figure(p.refuse_above * p.in_unit) + " " + p.unit);
   }
   for (Eigen::Index j = 0; j < n; ++j) {
-    if (!blamed[static_cast<std::size_t>(j)]) continue;
+    if (!blamed[static_cast<std::size_t>(j)] && lambda(j) > floor) continue;
     LostDirection direction;
     direction.sigma = lambda(j) <= floor ? std::numeric_limits<double>::infinity() : directions.col(j).norm();
     const Eigen::VectorXd size = directions.col(j).cwiseAbs();

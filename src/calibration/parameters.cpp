@@ -21,7 +21,8 @@ constexpr double kFlatHeadingSigma = kPi / 1.7320508075688772;
 
 int Layout::add(const std::string& name, Entry kind) {
   const EntryKind& k = kind_of(kind);
-  parameters.push_back({name, kind, refuse_above_[static_cast<std::size_t>(kind)] * k.si, k.unit, 1.0 / k.si});
+  parameters.push_back(
+      {name, kind, refuse_above_[static_cast<std::size_t>(kind)] * k.si, k.unit, 1.0 / k.si, k.refuse_above * k.si});
   return size() - 1;
 }
 
@@ -43,6 +44,7 @@ Layout::Layout(const LayoutRequest& request) : refuse_above_(request.refuse_abov
     const double w2 = request.largest_rate * request.largest_rate;
     for (int i = gyro_cubic; i < size(); ++i) {
       parameters[static_cast<std::size_t>(i)].refuse_above /= w2;
+      parameters[static_cast<std::size_t>(i)].scale /= w2;
       parameters[static_cast<std::size_t>(i)].in_unit *= w2;
     }
   }
@@ -71,8 +73,12 @@ Layout::Layout(const LayoutRequest& request) : refuse_above_(request.refuse_abov
   if (request.rig) {
     tilt = add("base tilt about east", Entry::kRigAngle);
     add("base tilt about north", Entry::kRigAngle);
+    // in axes of the Earth, the tilt is as uncertain as the heading turns it
+    for (int i = tilt; i < size(); ++i) parameters[static_cast<std::size_t>(i)].refuse_above *= 10.0;
     heading = add("heading", Entry::kRigAngle);
-    parameters.back().refuse_above = kFlatHeadingSigma;
+    // nobody's calibration: a prior holds it to the circle, and at a pole that is all there is
+    parameters.back().refuse_above = 10.0 * kFlatHeadingSigma;
+    parameters.back().scale = kFlatHeadingSigma;
     nonorthogonality = add("axis non-orthogonality", Entry::kRigAngle);
     eccentricity = size();
     for (const char* stage : {"azimuth", "pitch"}) {
@@ -88,6 +94,7 @@ Layout::Layout(const LayoutRequest& request) : refuse_above_(request.refuse_abov
   }
   gravity = add("gravity", Entry::kAccelScale);
   parameters.back().refuse_above *= kStandardGravity;
+  parameters.back().scale *= kStandardGravity;
   parameters.back().in_unit = 1e5;
   parameters.back().unit = "mGal";
 }

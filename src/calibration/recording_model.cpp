@@ -15,7 +15,9 @@ namespace {
 
 constexpr double kWindowMargin =
     0.25;                           // s of encoder course that a window needs on either side: room for the clock offset
-constexpr double kRestRate = 2e-4;  // rad/s: a window slower than this is one node
+constexpr double kSlowRate = 0.02;  // rad/s: no lever arm adds anything
+constexpr double kRestLength = 10.0;  // s, of a rest
+constexpr double kRestRate = 2e-4;    // rad/s: a window slower than this is one node
 
 // What a window depends on through the rig: the places of the derivatives in a Jet and in a row.
 enum RigPlace : int {
@@ -118,13 +120,14 @@ struct RecordingModel::WindowInput {
 };
 
 RecordingModel::RecordingModel(const TableRecording& recording, std::size_t index, const Rig& rig, const Site& site,
-                               const Layout& layout)
+                               const Layout& layout, double clock_offset)
     : recording_(recording), index_(index), rig_(rig), site_(site), layout_(layout) {
   const CompressedRecording& data = recording.data;
   usable_.reserve(data.windows.size());
   for (std::size_t k = 0; k < data.windows.size(); ++k) {
     const double margin = data.windows[k].half_width + kWindowMargin;
-    if (data.course.covers(data.windows[k].t - margin, data.windows[k].t + margin)) usable_.push_back(k);
+    const double t = data.windows[k].t - clock_offset;
+    if (data.course.covers(t - margin, t + margin)) usable_.push_back(k);
   }
   inflation_.assign(usable_.size(), {1, 1, 1, 1, 1, 1});
   if (usable_.empty()) return;
@@ -132,6 +135,8 @@ RecordingModel::RecordingModel(const TableRecording& recording, std::size_t inde
   const double sigma = data.course.reading_sigma() * std::sqrt(data.course.period() / data.course.knot_spacing());
   const double width = 2.0 * window(0).half_width;
   encoder_variance_ = 2.0 * sigma * sigma / (width * width);
+  // a reading stays where it is throughout a rest: its error is one draw for all windows of some ten seconds
+  angle_variance_ = data.course.reading_sigma() * data.course.reading_sigma() * kRestLength / width;
 }
 
 double RecordingModel::evaluate(const CalibrationValues& values, Eigen::MatrixXd* normal) const {
@@ -147,7 +152,21 @@ void RecordingModel::residuals(const CalibrationValues& values, const Visit& vis
 double RecordingModel::variance(std::size_t k, int row, bool moving) const {
   const double time = window(k).samples * recording_.data.figures.period;
   const double density = row < 3 ? noise_.gyro.density : noise_.accel.density;
-  return density * density / time + (row < 3 && moving ? encoder_variance_ : 0.0);
+  const double white = density * density / time;
+  if (row < 3) return white + (moving ? encoder_variance_ : 0.0);
+  return white + site_.gravity * site_.gravity * angle_variance_;
+}
+
+double RecordingModel::force_at_rest() const {
+  std::vector<double> force;
+  for (std::size_t k = 0; k < usable_.size(); ++k) {
+    const auto reading = recording_.data.course.at(window(k).t);
+    if (std::abs(reading[0].rate) + std::abs(reading[1].rate) < kSlowRate) force.push_back(window(k).mean.f.norm());
+  }
+  if (force.empty()) return site_.gravity;
+  const auto middle = force.begin() + static_cast<std::ptrdiff_t>(force.size() / 2);
+  std::nth_element(force.begin(), middle, force.end());
+  return *middle;
 }
 
 void RecordingModel::rest_noise(std::vector<double>& gyro, std::vector<double>& accel) const {

@@ -22,9 +22,10 @@ namespace trunnion::calibration {
 
 class RecordingModel {
  public:
-  /// @param index of the recording in the layout. The references must outlive the model.
+  /// @param index of the recording in the layout. @param clock_offset where the encoders are looked for first [s] The
+  /// references must outlive the model.
   RecordingModel(const TableRecording& recording, std::size_t index, const Rig& rig, const Site& site,
-                 const Layout& layout);
+                 const Layout& layout, double clock_offset);
 
   /// Windows that have samples and encoders on all sides.
   [[nodiscard]] std::size_t windows() const { return usable_.size(); }
@@ -42,6 +43,11 @@ class RecordingModel {
   using Visit = std::function<void(std::size_t window, int row, double residual, double innovation)>;
   /// Calls @p visit for every row.
   void residuals(const CalibrationValues& values, const Visit& visit) const;
+
+  [[nodiscard]] std::size_t index() const { return index_; }
+
+  /// Median specific force of the slow windows [m/s^2]; gravity where there are none.
+  [[nodiscard]] double force_at_rest() const;
 
   /// Adds |step| between neighbouring windows at rest, scaled to a noise density.
   void rest_noise(std::vector<double>& gyro, std::vector<double>& accel) const;
@@ -70,7 +76,8 @@ class RecordingModel {
   std::vector<std::size_t> usable_;
   std::vector<std::array<float, 6>> inflation_;
   UnitNoise noise_;
-  double encoder_variance_ = 0.0;
+  double encoder_variance_ = 0.0;  // of a window's mean rate
+  double angle_variance_ = 0.0;    // of a window's mean angle, as one of many in a rest
   std::size_t stride_ = 1;
 };
 

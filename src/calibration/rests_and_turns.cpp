@@ -26,6 +26,7 @@ struct Block {
   bool still = false;
 };
 
+/// @param v not empty
 double quantile(std::vector<double> v, double q) {
   const auto at = v.begin() + static_cast<std::ptrdiff_t>(q * static_cast<double>(v.size() - 1));
   std::nth_element(v.begin(), at, v.end());
@@ -50,7 +51,7 @@ void RestsAndTurns::imu(std::int64_t utime, const InertialSample<double>& sample
       break;
   }
   if (samples_.empty()) origin_ = utime;
-  samples_.push_back({1e-6 * static_cast<double>(utime - origin_), sample});
+  samples_.push_back({1e-6 * static_cast<double>(ChannelClock::difference(utime, origin_)), sample});
 }
 
 HandRecording RestsAndTurns::finish(double gyro_range, double accel_range) {
@@ -111,6 +112,7 @@ HandRecording RestsAndTurns::finish(double gyro_range, double accel_range) {
     b.still = b.scatter_w <= kScatterFactor * quiet_w && b.scatter_f <= kScatterFactor * quiet_f;
     for (int i = 0; b.still && i < 3; ++i) rest_rate[i].push_back(b.w(i));
   }
+  if (rest_rate[0].empty()) return std::move(result_);  // never still in both triads at once
   Vec3<double> usual;
   for (int i = 0; i < 3; ++i) usual(i) = quantile(rest_rate[i], 0.5);
   const double slack = kRestRate + 5.0 * quiet_w / std::sqrt(static_cast<double>(length));

@@ -22,8 +22,9 @@ namespace {
 constexpr double kLargestClockOffset = 0.2;  // s
 constexpr double kHuber = 4.0;               // sigmas
 constexpr int kRobustRounds = 4;
-constexpr int kCoarseStride = 16;   // windows
-constexpr double kNoiseStep = 1.0;  // s, of the residual series that the wander is estimated from
+constexpr double kWrongModel = 2.0;  // reduced chi-square of a recording
+constexpr int kCoarseStride = 16;    // windows
+constexpr double kNoiseStep = 1.0;   // s, of the residual series that the wander is estimated from
 
 /// One recording as one block of the Ceres problem, in square-root information form: n + 1 residuals stand for all its
 /// windows, with the same cost, gradient and J^T J, at a thousandth of the rows.
@@ -38,7 +39,7 @@ class RecordingCost final : public ceres::CostFunction {
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
     const int n = layout_.size();
     Eigen::VectorXd scale(n);
-    for (int i = 0; i < n; ++i) scale(i) = layout_.parameters[static_cast<std::size_t>(i)].refuse_above;
+    for (int i = 0; i < n; ++i) scale(i) = layout_.parameters[static_cast<std::size_t>(i)].scale;
     CalibrationValues values = fixed_;
     layout_.read(Eigen::Map<const Eigen::VectorXd>(parameters[0], n).cwiseProduct(scale), values);
     Eigen::Map<Eigen::VectorXd> r(residuals, n + 1);
@@ -79,9 +80,7 @@ struct Prior {
 class PriorCost final : public ceres::CostFunction {
  public:
   PriorCost(const Layout& layout, const Prior& prior)
-      : size_(layout.size()),
-        prior_(prior),
-        scale_(layout.parameters[static_cast<std::size_t>(prior.index)].refuse_above) {
+      : size_(layout.size()), prior_(prior), scale_(layout.parameters[static_cast<std::size_t>(prior.index)].scale) {
     mutable_parameter_block_sizes()->push_back(size_);
     set_num_residuals(1);
   }
@@ -109,7 +108,13 @@ class TableProblem {
     start_.clock_offset = options.clock_offset;
     for (std::size_t m = 0; m < kMaxMounts; ++m) start_.lever_arm[m] = rig.mount[m].lever_p;
     for (std::size_t r = 0; r < recordings.size(); ++r) {
-      models_.push_back(std::make_unique<RecordingModel>(recordings[r], r, rig, site, layout_));
+      models_.push_back(std::make_unique<RecordingModel>(recordings[r], r, rig, site, layout_, options.clock_offset));
+      const double ratio = models_.back()->force_at_rest() / site.gravity;
+      if (ratio < 0.7 || ratio > 1.4) {
+        throw Error(ExitCode::kInput, recordings[r].data.name + ": at rest the specific force is " +
+                                          std::to_string(ratio) +
+                                          " of gravity: wrong unit or nominal scale of the accelerometers");
+      }
       if (models_.back()->windows() == 0) {
         throw Error(ExitCode::kInput, recordings[r].data.name +
                                           ": the encoders and the IMU do not overlap in time (IMU " +
@@ -284,11 +289,10 @@ class TableProblem {
     solver.logging_type = ceres::SILENT;
     ceres::Solver::Summary summary;
     ceres::Solve(solver, &problem, &summary);
-    const bool failed = summary.termination_type == ceres::FAILURE ||
-                        (cost == nullptr && summary.termination_type == ceres::NO_CONVERGENCE);
+    const bool failed = summary.termination_type == ceres::FAILURE;
+    if (cost == nullptr) converged_ = !failed && summary.termination_type != ceres::NO_CONVERGENCE;
     for (int i = 0; i < n; ++i) x(i) *= scale(i);
     layout_.read(x, values);
-    if (failed && cost == nullptr) throw Error(ExitCode::kNumerics, "the solve did not converge: " + summary.message);
     if (cost != nullptr) *cost = failed ? std::numeric_limits<double>::infinity() : summary.final_cost;
     return static_cast<int>(summary.iterations.size());
   }
@@ -313,18 +317,54 @@ class TableProblem {
     return changed * 10000 > rows;
   }
 
-  [[nodiscard]] double scale(int i) const { return layout_.parameters[static_cast<std::size_t>(i)].refuse_above; }
+  [[nodiscard]] double scale(int i) const { return layout_.parameters[static_cast<std::size_t>(i)].scale; }
+
+  /// How badly a recording fits.
+  struct Fit {
+    double chi_square = 0.0;
+    std::string name;
+  };
+
+  /// What the fit says against the sigmas: none when it says that the model is wrong; wider ones when it says that the
+  /// noise is larger than stated.
+  void hold_against_the_data(Observability& observability, const Fit& worst, double chi_square) const {
+    if (!converged_) {
+      throw Error(
+          ExitCode::kNumerics,
+          "the solve did not converge; worst fit in " + worst.name +
+              ". Look at the order of the encoder axes, their signs and units, and which mount each recording is of");
+    }
+    if (options_.estimate_clock_offset && std::abs(start_.clock_offset) > kLargestClockOffset) {
+      throw Error(
+          ExitCode::kInput,
+          "the IMU's clock is more than 0.2 s off the encoder's: state clock.imu_to_encoder_offset in the run file");
+    }
+    if (worst.chi_square > kWrongModel) {
+      throw Error(
+          ExitCode::kNumerics,
+          "the data do not fit the model: reduced chi-square " + std::to_string(worst.chi_square) + " in " +
+              worst.name +
+              ". The unit is noisier than its sheet (leave the sheet out), its clock drifts, or the encoders fail");
+    }
+    if (chi_square > 1.0) observability.covariance *= chi_square;
+  }
 
   Solution conclude(const UnitNoise& noise, int iterations) {
     const int n = layout_.size();
     Eigen::MatrixXd information = Eigen::MatrixXd::Zero(n, n);
     double cost = 0.0;
+    double rows = 0.0;
+    Fit worst;
     for (const auto& model : models_) {
       Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(n + 1, n + 1);
       model->evaluate(start_, &normal);
       information += normal.topLeftCorner(n, n);
       cost += normal(n, n);
+      rows += 6.0 * static_cast<double>(model->windows());
+      const double chi_square = normal(n, n) / (6.0 * static_cast<double>(model->windows()));
+      if (chi_square > worst.chi_square) worst = {chi_square, recordings_[model->index()].data.name};
     }
+    const double freedom = std::max(1.0, rows - n);
     information(prior_.index, prior_.index) += 1.0 / (prior_.sigma * prior_.sigma);
     // a heading may be anything: its flat prior is knowledge enough, it is nobody's calibration
     information(layout_.heading, layout_.heading) += 1.0 / (scale(layout_.heading) * scale(layout_.heading));
@@ -333,11 +373,7 @@ class TableProblem {
     solution.parameters = layout_.parameters;
     layout_.write(start_, solution.x);
     solution.observability = judge(information, layout_.parameters);
-    if (solution.observability.refused.empty() && std::abs(start_.clock_offset) > kLargestClockOffset) {
-      throw Error(
-          ExitCode::kInput,
-          "the IMU's clock is more than 0.2 s off the encoder's: state clock.imu_to_encoder_offset in the run file");
-    }
+    if (solution.observability.refused.empty()) hold_against_the_data(solution.observability, worst, cost / freedom);
     solution.noise = noise;
     solution.gauge = {"pitch_encoder_zero", request().mounts.front() + "_datum"};
     CalibrationRecord& record = solution.record;
@@ -352,14 +388,13 @@ class TableProblem {
       record.recording_mount[r] = recordings_[r].mount;
       record.fit.samples += figures.samples;
       record.fit.windows += static_cast<long long>(models_[r]->windows());
-      record.fit.outliers += figures.outliers;
+      record.fit.outliers += figures.outliers + recordings_[r].data.course.outliers();
       for (const auto& inflation : models_[r]->inflation()) {
         record.fit.outliers +=
             std::any_of(inflation.begin(), inflation.end(), [](float row) { return row > 1.0F; }) ? 1 : 0;
       }
     }
-    const double rows = 6.0 * static_cast<double>(record.fit.windows);
-    record.fit.reduced_chi_square = cost / std::max(1.0, rows - n);
+    record.fit.reduced_chi_square = cost / freedom;
     record.fit.iterations = iterations;
     return solution;
   }
@@ -371,6 +406,7 @@ class TableProblem {
   CalibrationValues start_;  // and, after each minimise(), the current estimate
   std::vector<std::unique_ptr<RecordingModel>> models_;
   Prior prior_{};
+  bool converged_ = false;  // the last full solve
 };
 
 }  // namespace

@@ -54,6 +54,13 @@ void append_unsigned(std::string& out, U v) {
 
 inline void append_i64(std::string& out, std::int64_t v) { append_unsigned(out, static_cast<std::uint64_t>(v)); }
 
+inline void store_double(double v, char* p) {
+  std::uint64_t bits = 0;
+  std::memcpy(&bits, &v, sizeof bits);
+  bits = to_big_endian(bits);
+  std::memcpy(p, &bits, sizeof bits);
+}
+
 inline void append_double(std::string& out, double v) {
   std::uint64_t bits = 0;
   std::memcpy(&bits, &v, sizeof bits);

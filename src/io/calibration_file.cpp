@@ -115,19 +115,22 @@ bool is_flat(const Json& value) {
   return true;
 }
 
+/// Bytes that are not UTF-8, of a name that a user gave, are replaced.
+std::string text_of(const Json& value) { return value.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
 /// Block style for maps, flow style for numbers: JSON scalars and lists are YAML.
 void print(const Json& value, int indent, std::string& out) {
   for (const auto& [key, child] : value.items()) {
     out += std::string(static_cast<std::size_t>(indent), ' ') + key + ":";
     if (is_flat(child) || child.empty()) {
-      out += " " + child.dump() + "\n";
+      out += " " + text_of(child) + "\n";
     } else if (child.is_object()) {
       out += "\n";
       print(child, indent + 2, out);
     } else {
       out += "\n";
       for (const Json& item : child)
-        out += std::string(static_cast<std::size_t>(indent) + 2, ' ') + "- " + item.dump() + "\n";
+        out += std::string(static_cast<std::size_t>(indent) + 2, ' ') + "- " + text_of(item) + "\n";
     }
   }
 }
@@ -192,7 +195,9 @@ std::string to_yaml(const CalibrationFile& file) {
   return out;
 }
 
-std::string to_json(const CalibrationFile& file) { return tree_of(file).dump(2) + "\n"; }
+std::string to_json(const CalibrationFile& file) {
+  return tree_of(file).dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
 
 CalibrationFile read_calibration_file(const std::string& path) {
   const StrictYaml root = StrictYaml::load(path);
@@ -232,6 +237,9 @@ CalibrationFile read_calibration_file(const std::string& path) {
       }
       r.value.recording_bias[i] = {one.at("gyroscope_bias_rad_s").vector(), one.at("accelerometer_bias_m_s2").vector()};
     }
+  }
+  if (root.has("gauge")) {
+    for (std::size_t i = 0; i < root.at("gauge").length(); ++i) file.gauge.push_back(root.at("gauge").at(i).text());
   }
   if (root.has("verdict")) file.within_limits = root.at("verdict").text() == "within_limits";
   return file;

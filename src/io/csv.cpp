@@ -31,6 +31,7 @@ constexpr std::array<Unit, 3> kRateUnits = {
 constexpr std::array<Unit, 3> kForceUnits = {
     {{"m/s^2", "_m_s2", 1.0}, {"g", "_g", kStandardGravity}, {"mg", "_mg", 1e-3 * kStandardGravity}}};
 constexpr std::array<Unit, 2> kAngleUnits = {{{"rad", "_rad", 1.0}, {"deg", "_deg", kRadPerDeg}}};
+constexpr double kLargestReading = 1e6;  // rad/s, m/s^2, rad
 constexpr const char* kCounts = "counts";
 constexpr std::array<const char*, 6> kSensors = {"gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z"};
 
@@ -66,6 +67,7 @@ class Table {
     if (text_.find_first_not_of(" \t\r\n") == std::string::npos) throw input_error(path_, 0, "", "is empty");
     next_ = text_.data();
     end_ = next_ + text_.size();
+    if (text_.rfind("\xef\xbb\xbf", 0) == 0) next_ += 3;  // a byte-order mark
     const char* newline = static_cast<const char*>(std::memchr(next_, '\n', static_cast<std::size_t>(end_ - next_)));
     const std::string first(next_, newline != nullptr ? newline : end_);
     separator_ = first.find(',') != std::string::npos ? ',' : first.find(';') != std::string::npos ? ';' : ' ';
@@ -145,6 +147,9 @@ class Table {
       const double cell = cells_[columns_[i].index];
       if (!std::isfinite(cell)) throw input_error(path_, line_, columns_[i].quantity, "is not finite");
       value[i] = (cell - columns_[i].zero) * columns_[i].si;
+      if (columns_[i].quantity != "t" && std::abs(value[i]) > kLargestReading) {
+        throw input_error(path_, line_, columns_[i].quantity, "is beyond any sensor");
+      }
     }
     next_ = p;
     skip_rest();
@@ -219,9 +224,10 @@ class Table {
       }
     }
     for (const std::string& name : names_) {
-      if (name == quantity)
+      if (name == quantity) {
         throw input_error(path_, 1, name,
                           "the header has no unit: name it one of " + wanted + ", or map it under columns");
+      }
     }
     throw input_error(path_, 1, quantity, "no such column: name it one of " + wanted + ", or map it under columns");
   }
@@ -287,10 +293,8 @@ void read_split_csv(const std::string& gyro_path, const std::string& accel_path,
     if (map.count(quantity) == 0) map[quantity] = {"", index, unit};
   };
   by_default("t", 0, "s");
-  for (int i = 0; i < 3; ++i) {
-    by_default(kSensors[static_cast<std::size_t>(i)], 1 + i, kCounts);
-    by_default(kSensors[static_cast<std::size_t>(3 + i)], 1 + i, kCounts);
-  }
+  int column = 0;
+  for (const char* sensor : kSensors) by_default(sensor, 1 + column++ % 3, kCounts);
   gyro.choose({"t", kSensors[0], kSensors[1], kSensors[2]}, map, sheet);
   accel.choose({"t", kSensors[3], kSensors[4], kSensors[5]}, map, sheet);
   std::array<double, 4> g{};

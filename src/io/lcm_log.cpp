@@ -51,9 +51,10 @@ bool LcmLogReader::have(std::size_t bytes) {
     }
     const ssize_t got = ::read(descriptor_, buffer_.data() + end_, std::min(kBlock, buffer_.size() - end_));
     if (got < 0 && errno == EINTR) continue;
-    if (got < 0)
+    if (got < 0) {
       throw input_error_at_byte(path_, offset_ + static_cast<std::int64_t>(end_), "",
                                 std::string("cannot read: ") + std::strerror(errno));
+    }
     if (got == 0) {
       at_end_ = true;
     } else {

@@ -13,7 +13,8 @@
 namespace trunnion::io {
 namespace {
 
-constexpr std::size_t kImuBytes = 8 + 8 + 8 + 6 * 8 + 8;
+constexpr std::size_t kImuHead = 8 + 8 + 8;
+constexpr std::size_t kImuBytes = kImuHead + 6 * 8 + 8;
 constexpr std::size_t kEncoderHead = 8 + 8 + 8 + 4;
 constexpr std::size_t kBatchHead = 8 + 8 + 8 + 4;
 constexpr std::size_t kBatchSample = 7 * 8;
@@ -30,7 +31,7 @@ std::string hexadecimal(std::uint64_t v) {
 
 }  // namespace
 
-std::int64_t LcmDecoder::imu(const LcmEvent& event) {
+void LcmDecoder::imu(const LcmEvent& event) {
   const char* p = event.data.data();
   const std::uint64_t fingerprint = event.data.size() >= 8 ? load_u64(p) : 0;
   if (fingerprint == kImuFingerprint && event.data.size() == kImuBytes) {
@@ -46,9 +47,7 @@ std::int64_t LcmDecoder::imu(const LcmEvent& event) {
     damage(event, foreign(event, fingerprint,
                           "trunnion_lcm.imu_t (" + hexadecimal(kImuFingerprint) + ") or trunnion_lcm.imu_batch_t (" +
                               hexadecimal(kImuBatchFingerprint) + ")"));
-    return 0;
   }
-  return load_i64(p + 16);
 }
 
 void LcmDecoder::encoder(const LcmEvent& event) {
@@ -150,6 +149,17 @@ LcmLosses read_lcm_recording(const std::string& path, const LcmChannels& channel
     throw input_error(path, 0, "", "no usable message on the encoder channel '" + channels.encoder + "'");
   }
   return {log.lost_records() + decoder.damaged().records, log.lost_bytes() + decoder.damaged().bytes};
+}
+
+void replace_samples(const std::vector<InertialSample<double>>& samples, std::string& message) {
+  const std::size_t n = samples.size();
+  const bool batch = load_u64(message.data()) == kImuBatchFingerprint;
+  for (std::size_t k = 0; k < n; ++k) {
+    for (std::size_t i = 0; i < 6; ++i) {
+      const double value = i < 3 ? samples[k].w(static_cast<int>(i)) : samples[k].f(static_cast<int>(i) - 3);
+      store_double(value, message.data() + (batch ? kBatchHead + 8 * ((1 + i) * n + k) : kImuHead + 8 * i));
+    }
+  }
 }
 
 void encode_imu(std::int64_t utime, std::int64_t sequence, const InertialSample<double>& sample, std::string& out) {

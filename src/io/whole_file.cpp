@@ -7,9 +7,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <utility>
 
 #include "trunnion/io/fault.hpp"
@@ -25,12 +27,14 @@ Error failed(const std::string& path, const char* doing) {
 
 }  // namespace
 
-WholeFile::WholeFile(std::string path)
-    : path_(std::move(path)), temporary_(path_ + ".part-" + std::to_string(::getpid())) {
+WholeFile::WholeFile(std::string path) : path_(std::move(path)) {
   struct stat status {};
-  if (::stat(path_.c_str(), &status) == 0 && S_ISDIR(status.st_mode)) {
-    throw input_error(path_, 0, "", "is a folder, not a file to write");
+  if (::stat(path_.c_str(), &status) == 0) {
+    if (S_ISDIR(status.st_mode)) throw input_error(path_, 0, "", "is a folder, not a file to write");
+    if (!S_ISREG(status.st_mode)) throw input_error(path_, 0, "", "is a device, not a file to write");
+    path_ = std::filesystem::canonical(path_).string();  // what a link points to is written, the link stays
   }
+  temporary_ = path_ + ".part-" + std::to_string(::getpid());
   descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   if (descriptor_ < 0) throw failed(path_, "write");
 }
@@ -79,8 +83,11 @@ std::string read_whole(const std::string& path, std::size_t most) {
   if (descriptor < 0) throw failed(path, "read");
   std::string text;
   struct stat status {};
-  if (::fstat(descriptor, &status) == 0 && status.st_size > 0)
-    text.reserve(static_cast<std::size_t>(status.st_size) + 1);
+  if (::fstat(descriptor, &status) != 0 || !S_ISREG(status.st_mode)) {
+    ::close(descriptor);
+    throw input_error(path, 0, "", "is not a regular file");
+  }
+  text.reserve(std::min(static_cast<std::size_t>(status.st_size), most) + 1);
   std::string block(kBlock, '\0');
   ssize_t got = 0;
   while ((got = ::read(descriptor, block.data(), block.size())) > 0 && text.size() <= most)

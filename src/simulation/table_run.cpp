@@ -118,6 +118,7 @@ TableRunSettings TableRunSettings::noise_free() const {
   clean.accel_quantum = 0.0;
   clean.outlier_fraction = 0.0;
   clean.dropped_fraction = 0.0;
+  clean.exact_gravity = true;
   return clean;
 }
 
@@ -159,7 +160,7 @@ CalibrationValues draw_truth(const TableRunSettings& s, const Rig& rig, const Si
     truth.lever_arm[m] = rig.mount[m].lever_p + s.lever_arm * direction.normalized();
   }
   truth.clock_offset = 1e-6 * std::round(1e6 * s.largest_clock_offset * (2.0 * draw.uniform() - 1.0));
-  truth.gravity = site.gravity + site.gravity_sigma * draw();
+  truth.gravity = site.gravity + (s.exact_gravity ? 0.0 : site.gravity_sigma * draw());
   for (int r = 0; r < recordings; ++r) {
     auto& bias = truth.recording_bias[static_cast<std::size_t>(r)];
     bias.w = gyro_bias + vector(s.gyro_turn_on_bias);
@@ -240,8 +241,9 @@ void run_table(const TableRunSettings& s, const CalibrationValues& truth, const 
   const double encoder_period = 1.0 / s.encoder_rate;
   long long encoder_index = 0;
   const auto publish_encoder = [&](double until) {
-    for (double t = static_cast<double>(encoder_index) * encoder_period; t <= until;
-         t = static_cast<double>(++encoder_index) * encoder_period) {
+    for (;; ++encoder_index) {
+      const double t = static_cast<double>(encoder_index) * encoder_period;
+      if (t > until) return;
       const double azimuth =
           quantised(truth.rig.eccentricity[kAzimuth].distort(motion.azimuth.angle(t)), encoder_quantum);
       const double pitch = quantised(truth.rig.eccentricity[kPitch].distort(motion.pitch.angle(t)), encoder_quantum);

@@ -87,6 +87,38 @@ TEST(Compressor, DropsAndCountsStampsThatRepeatOrStepBack) {
   EXPECT_EQ(r.figures.samples, 1000);
 }
 
+// One damaged stamp costs one message, be it the first or a leap ahead.
+TEST(Compressor, SurvivesADamagedStamp) {
+  for (const int damaged : {0, 500}) {
+    Compressor compressor(named());
+    const InertialSample<double> s{Vec3<double>::Zero(), Vec3<double>(0, 0, 9.8)};
+    for (int i = 0; i < 1000; ++i) compressor.imu(kStart + 2500 * i + (i == damaged ? 500000000 : 0), s);
+    const CompressedRecording r = compressor.finish();
+    EXPECT_GE(r.figures.samples, 998) << damaged;
+    EXPECT_GE(r.figures.stray, 1) << damaged;
+  }
+}
+
+// A pause of five seconds is a hole, not a reset: the first sample after it is what the doubt costs.
+TEST(Compressor, TakesAPauseAsAHole) {
+  Compressor compressor(named());
+  const InertialSample<double> s{Vec3<double>::Zero(), Vec3<double>(0, 0, 9.8)};
+  for (int i = 0; i < 1000; ++i) compressor.imu(kStart + 2500 * i + (i >= 500 ? 5000000 : 0), s);
+  EXPECT_EQ(compressor.finish().figures.samples, 999);
+}
+
+TEST(Compressor, RefusesARateThatIsNotTheSheets) {
+  CompressOptions options = named();
+  options.period = 0.005;
+  try {
+    record(4000, options, [](int, InertialSample<double>&) { return true; });
+    FAIL() << "not refused";
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ExitCode::kInput);
+    EXPECT_THAT(e.what(), HasSubstr("the samples come at 400.000000 Hz, the sheet's rate_hz says 200"));
+  }
+}
+
 TEST(Compressor, RefusesAClockThatWasReset) {
   Compressor compressor(named());
   const InertialSample<double> s{Vec3<double>::Zero(), Vec3<double>(0, 0, 9.8)};

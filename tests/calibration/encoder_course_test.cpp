@@ -55,6 +55,22 @@ TEST(EncoderCourse, KnowsItsHoles) {
   EXPECT_FALSE(course.covers(19.0, 21.0));
 }
 
+// A reading that departs from both neighbours is left out, also when it lies turns away.
+TEST(EncoderCourse, LeavesAWildReadingOut) {
+  EncoderCourse course;
+  for (int i = 0; i < 4000; ++i) {
+    const double t = 0.005 * i;
+    const double wild = i == 1000 ? 1.0 : i == 2000 ? 1e6 : 0.0;
+    course.add(t, azimuth(t) + wild, pitch(t));
+  }
+  course.finish();
+  EXPECT_EQ(course.outliers(), 2);
+  for (double t = 0.1; t < 19.9; t += 0.0371) {
+    EXPECT_NEAR(std::remainder(course.at(t)[0].angle - azimuth(t), 2.0 * kPi), 0.0, 1e-7);
+  }
+  EXPECT_LT(course.reading_sigma(), 1e-6);
+}
+
 // The quantisation of 21 bits is 3 urad wide: uniform, 0.865 urad, and third differences see it.
 TEST(EncoderCourse, TellsTheNoiseOfAReading) {
   const double quantum = 2.0 * kPi / 2097152.0;

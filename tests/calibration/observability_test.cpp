@@ -40,6 +40,16 @@ TEST(Judge, NamesAnExactLossOfRank) {
   EXPECT_THAT(o.lost[0].entries, testing::UnorderedElementsAre("a", "b"));
 }
 
+// However well the rest is known, an exact loss of rank is never let through.
+TEST(Judge, RefusesAnExactLossOfRankHoweverStrongTheRest) {
+  Eigen::MatrixXd A = Eigen::MatrixXd::Constant(3, 3, 0.0);
+  A.topLeftCorner(2, 2).setConstant(1e30);
+  A(2, 2) = 1e8;
+  const Observability o = judge(A, three());
+  ASSERT_EQ(o.refused.size(), 2U);
+  EXPECT_THAT(o.refused[0], HasSubstr("a: undetermined"));
+}
+
 // No rank is lost, but a sigma passes its limit: refused with the sigma and the limit.
 TEST(Judge, RefusesASigmaBeyondItsLimit) {
   Eigen::MatrixXd A = Eigen::MatrixXd::Identity(3, 3) * 1e8;

@@ -126,6 +126,38 @@ TEST(SolveTable, RefusesARecordingWithoutCommonTime) {
   }
 }
 
+// A unit that reads g where m/s^2 is expected is no unit with a scale error of -900,000 ppm.
+TEST(SolveTable, RefusesAWrongUnitOfTheAccelerometers) {
+  std::vector<TableRecording> in_g = noisy().recordings;
+  for (TableRecording& recording : in_g) {
+    for (ObservationWindow& window : recording.data.windows) window.mean.f /= kStandardGravity;
+  }
+  TableSolveOptions options;
+  options.noise = settings().noise;
+  try {
+    solve_table(in_g, cyclic_rig(), bench(), options);
+    FAIL() << "not refused";
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ExitCode::kInput);
+    EXPECT_THAT(e.what(), HasSubstr("wrong unit or nominal scale of the accelerometers"));
+  }
+}
+
+// A sheet that promises a tenth of the noise: the fit says so, and no sigma is printed.
+TEST(SolveTable, RefusesDataThatDoNotFitTheirSheet) {
+  TableSolveOptions options;
+  options.noise = settings().noise;
+  options.noise.gyro.density *= 0.1;
+  options.noise.accel.density *= 0.1;
+  try {
+    solve_table(noisy().recordings, cyclic_rig(), bench(), options);
+    FAIL() << "not refused";
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ExitCode::kNumerics);
+    EXPECT_THAT(e.what(), HasSubstr("the data do not fit the model"));
+  }
+}
+
 // A clock offset that the run file states is taken as it is.
 TEST(SolveTable, AStatedClockOffsetIsNotEstimated) {
   TableSolveOptions options;

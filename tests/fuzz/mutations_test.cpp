@@ -12,6 +12,7 @@
 
 #include "matchers/temporary_folder.hpp"
 #include "trunnion/calibration/compress.hpp"
+#include "trunnion/calibration/rests_and_turns.hpp"
 #include "trunnion/core/error.hpp"
 #include "trunnion/io/calibration_file.hpp"
 #include "trunnion/io/csv.hpp"
@@ -95,6 +96,16 @@ class ToCompressor final : public io::SampleSink {
   calibration::Compressor& compressor_;
 };
 
+class ToParts final : public io::SampleSink {
+ public:
+  explicit ToParts(calibration::RestsAndTurns& parts) : parts_(parts) {}
+  void imu(std::int64_t t, const InertialSample<double>& s) override { parts_.imu(t, s); }
+  void encoder(std::int64_t, double, double) override {}
+
+ private:
+  calibration::RestsAndTurns& parts_;
+};
+
 /// Feeds mutations of @p seed to @p read; every outcome but a clean read or an Error fails the test.
 void run(const char* kind, const std::string& seed, const std::string& path, const std::function<void()>& read) {
   std::mt19937_64 rng(20261122);
@@ -141,13 +152,21 @@ TEST(Mutations, OfTables) {
   const TemporaryFolder folder;
   const std::string path = folder / "fuzz.csv";
   std::string text = io::imu_csv_header();
-  for (int i = 0; i < 60; ++i)
+  for (int i = 0; i < 400; ++i)
     io::append_imu_csv(0.01 * i, {Vec3<double>(0.1, 0.2, 0.3), Vec3<double>(1, 2, 9.8)}, text);
   run("tables", text, path, [&] {
     calibration::Compressor compressor({});
     ToCompressor sink(compressor);
     std::string digest;
     io::read_imu_csv(path, {}, {}, sink, digest);
+    static_cast<void>(compressor.finish());
+  });
+  run("tables by hand", text, path, [&] {
+    calibration::RestsAndTurns parts(path);
+    ToParts sink(parts);
+    std::string digest;
+    io::read_imu_csv(path, {}, {}, sink, digest);
+    static_cast<void>(parts.finish(0.0, 0.0));
   });
 }
 

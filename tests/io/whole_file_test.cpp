@@ -45,6 +45,16 @@ TEST(WholeFile, RefusesAFolderThatIsNotThereAndAFolderInItsPlace) {
   EXPECT_REFUSES(ExitCode::kInput, "is a folder", write_whole(folder / "sub", "x"));
 }
 
+TEST(WholeFile, RefusesADeviceAndWritesThroughALink) {
+  const TemporaryFolder folder;
+  EXPECT_REFUSES(ExitCode::kInput, "is a device", write_whole("/dev/null", "x"));
+  write_whole(folder / "target.txt", "old");
+  std::filesystem::create_symlink(folder / "target.txt", folder / "link.txt");
+  write_whole(folder / "link.txt", "new");
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "link.txt"));
+  EXPECT_EQ(read_whole(folder / "target.txt"), "new");
+}
+
 TEST(WholeFile, SaysThatTheDiskIsFull) {
   if (::access("/dev/full", W_OK) != 0) GTEST_SKIP() << "no /dev/full";
   const TemporaryFolder folder;

@@ -4,10 +4,9 @@
 /// One streaming pass from samples to observation windows: memory grows with the windows (0.1 s each), not with the
 /// samples.
 ///
-/// A sample whose stamp does not increase, or leaps by more than ten minutes, is dropped and counted; stamps that stay
-/// away are a clock that was reset, and refused. A sample that stands alone against its neighbours (eight robust
-/// sigmas) is an outlier, one at or past the sensor's range is saturated: both are left out, and the window's weights
-/// know it (positions/observation.hpp).
+/// A sample with a stray stamp is dropped and counted; a clock that was reset is refused. A sample that stands alone
+/// against its neighbours (eight robust sigmas) is an outlier, one at or past the sensor's range is saturated: both are
+/// left out, and the window's weights know it (positions/observation.hpp).
 
 #pragma once
 
@@ -22,32 +21,47 @@
 namespace trunnion::calibration {
 
 /// Judges the stamps of one channel.
+///
+/// A stamp that does not increase, or that leaps by more than a second, is a stray until the next stamp continues from
+/// it: one damaged stamp costs one message. Stamps that stay behind, or more than ten minutes ahead, are another clock.
 class ChannelClock {
  public:
   enum class Verdict { kNext, kDuplicate, kStray, kReset };
 
-  /// Stamps that stay away for this many messages are not a hiccup: the clock was reset.
-  static constexpr int kResetAfter = 20;
-  /// A step this long is a stray stamp or another clock; it also bounds the memory that a hostile stamp can ask for.
-  static constexpr std::int64_t kLongestSilence = 600000000;  // us
+  static constexpr int kResetAfter = 20;                      ///< messages that stay away
+  static constexpr std::int64_t kLeap = 1000000;              ///< us
+  static constexpr std::int64_t kLongestSilence = 600000000;  ///< us; also bounds what a hostile stamp can ask for
+
+  /// a - b [us]; unsigned inside, so that hostile stamps wrap and do not overflow.
+  static std::int64_t difference(std::int64_t a, std::int64_t b) {
+    return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) - static_cast<std::uint64_t>(b));
+  }
 
   Verdict judge(std::int64_t utime) {
-    // unsigned, so that hostile stamps wrap and do not overflow
-    const auto step = static_cast<std::int64_t>(static_cast<std::uint64_t>(utime) - static_cast<std::uint64_t>(last_));
-    if (!started_ || (step > 0 && step <= kLongestSilence)) {
-      started_ = true;
-      last_ = utime;
-      astray_ = 0;
-      return Verdict::kNext;
-    }
+    if (accepted_ == 0) return accept(utime);
+    const std::int64_t step = difference(utime, last_);
+    if (step > 0 && step <= kLeap) return accept(utime);
     if (step == 0) return Verdict::kDuplicate;
+    const std::int64_t from_candidate = difference(utime, candidate_);
+    const bool continues = astray_ > 0 && from_candidate > 0 && from_candidate <= kLeap;
+    // after the first stamp alone, it is the first that was damaged
+    if (continues && (accepted_ == 1 || (step > 0 && step <= kLongestSilence))) return accept(utime);
+    candidate_ = utime;
     return ++astray_ >= kResetAfter ? Verdict::kReset : Verdict::kStray;
   }
 
  private:
+  Verdict accept(std::int64_t utime) {
+    last_ = utime;
+    astray_ = 0;
+    ++accepted_;
+    return Verdict::kNext;
+  }
+
   std::int64_t last_ = 0;
+  std::int64_t candidate_ = 0;
+  long long accepted_ = 0;
   int astray_ = 0;
-  bool started_ = false;
 };
 
 struct CompressOptions {

@@ -33,7 +33,11 @@ class EncoderCourse {
   /// Feeds the readings at @p t [s], wrapped or not [rad]. Times must increase.
   void add(double t, double azimuth, double pitch);
 
-  /// Solves eq. (1). Call once, after the last add().
+  /// Readings that departed from both neighbours and were left out.
+  [[nodiscard]] long long outliers() const { return outliers_; }
+
+  /// Solves eq. (1). Call once, after the last add(). @throws Error (input) when the stamps leave holes for more knots
+  /// than the readings could ever fill
   void finish();
 
   /// Readings of both encoders at @p t [s], unwrapped; within [begin(), end()].
@@ -54,6 +58,8 @@ class EncoderCourse {
   [[nodiscard]] double period() const { return period_; }
 
  private:
+  void settle();
+  void take(double t, double azimuth, double pitch);
   void start();
   void accumulate(double t, double azimuth, double pitch);
 
@@ -65,6 +71,10 @@ class EncoderCourse {
   struct Reading {
     double t, azimuth, pitch;
   };
+  std::array<Reading, 3> recent_{};  // the middle one is judged by its neighbours
+  std::size_t waiting_ = 0;          // of them
+  double usual_departure_ = 0.0;     // rad, running mean
+  long long outliers_ = 0;
   std::vector<Reading> first_;  // the readings that set the period, then freed
   std::vector<Row> rows_;       // freed by finish()
   std::vector<std::array<double, 2>> coefficient_;

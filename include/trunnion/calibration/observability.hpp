@@ -25,10 +25,10 @@ namespace trunnion::calibration {
 struct Parameter {
   std::string name;  ///< in the user's words: "gyro y cross-coupling into z"
   Entry kind = Entry::kGyroBias;
-  double refuse_above =
-      1.0;               ///< 1 sigma beyond which the entry is not worth printing, SI; also its scale in the solver
-  std::string unit;      ///< in which a person reads it
-  double in_unit = 1.0;  ///< SI value times this is the value in that unit
+  double refuse_above = 1.0;  ///< 1 sigma beyond which the entry is not worth printing, SI
+  std::string unit;           ///< in which a person reads it
+  double in_unit = 1.0;       ///< SI value times this is the value in that unit
+  double scale = 1.0;         ///< in the solver, SI: whatever the limits of a run, the numerics are the same
 };
 
 /// A direction in parameter space that the data do not fix.

@@ -9,6 +9,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "trunnion/core/error.hpp"
 #include "trunnion/io/digest.hpp"
@@ -40,8 +41,8 @@ class LcmDecoder {
   /// The references must outlive the decoder.
   LcmDecoder(const std::string& path, SampleSink& sink) : path_(path), sink_(sink) {}
 
-  /// imu_t or imu_batch_t. @return the sequence number of its first sample
-  std::int64_t imu(const LcmEvent& event);
+  /// imu_t or imu_batch_t.
+  void imu(const LcmEvent& event);
   /// encoder_t with two axes.
   void encoder(const LcmEvent& event);
 
@@ -75,6 +76,9 @@ using Progress = std::function<void(double fraction)>;
 /// @throws Error (input) for a missing, empty or useless log, another type's fingerprint, or values that are not finite
 LcmLosses read_lcm_recording(const std::string& path, const LcmChannels& channels, bool need_encoder, SampleSink& sink,
                              Sha256* digest = nullptr, const Progress& progress = {});
+
+/// Puts other samples into a message of type imu_t or imu_batch_t that was decoded into as many; the rest stays.
+void replace_samples(const std::vector<InertialSample<double>>& samples, std::string& message);
 
 /// Encodes one message of type imu_t, or encoder_t with two axes, into @p out (cleared first).
 void encode_imu(std::int64_t utime, std::int64_t sequence, const InertialSample<double>& sample, std::string& out);

@@ -44,6 +44,7 @@ struct TableRunSettings {
   double lever_arm;                                          ///< m, length; direction at random in each mount
   double largest_clock_offset;                               ///< s, uniform on both sides
 
+  bool exact_gravity = false;     ///< gravity is what the site says, else drawn about it
   double outlier_fraction = 0.0;  ///< of the samples
   double gyro_outlier = 1.0;      ///< rad/s
   double accel_outlier = 5.0;     ///< m/s^2
