@@ -48,14 +48,19 @@ void EncoderCourse::add(double t, double azimuth, double pitch) {
   if (waiting_ == recent_.size()) settle();
 }
 
-/// Passes on the oldest of three readings, and drops the middle one when it departs from what its neighbours say by
-/// more than the table can accelerate in between.
+/// Passes on the oldest of three readings, and drops the middle one when it departs from what the others say by more
+/// than the table can accelerate in between.
 void EncoderCourse::settle() {
   const auto& [a, b, c] = recent_;
   const double span = c.t - a.t;
-  const double u = (b.t - a.t) / span;
-  const double departure = std::max(std::abs(b.azimuth - a.azimuth - u * (c.azimuth - a.azimuth)),
-                                    std::abs(b.pitch - a.pitch - u * (c.pitch - a.pitch)));
+  const auto departure_from = [&](const Reading& p, const Reading& q) {
+    const double u = (b.t - p.t) / (q.t - p.t);
+    return std::max(std::abs(b.azimuth - p.azimuth - u * (q.azimuth - p.azimuth)),
+                    std::abs(b.pitch - p.pitch - u * (q.pitch - p.pitch)));
+  };
+  // between its neighbours, and in line with the two before: a wild neighbour spoils one of them only
+  double departure = departure_from(a, c);
+  if (readings_ > 0) departure = std::min(departure, departure_from(taken_, a));
   if (departure > kOutlierFactor * usual_departure_ + kLargestAcceleration * span * span) {
     ++outliers_;
     recent_[1] = recent_[2];
@@ -74,8 +79,9 @@ void EncoderCourse::settle() {
 }
 
 void EncoderCourse::take(double t, double azimuth, double pitch) {
+  taken_ = {t, azimuth, pitch};
   unwrapped_ = {azimuth, pitch};
-  if (readings_ >= 3 && t - previous_t_[0] < 3.5 * (previous_t_[2] - previous_t_[1])) {
+  if (readings_ >= 3 && period_ > 0.0 && std::abs(t - previous_t_[0] - 3.0 * period_) < 0.5 * period_) {
     for (std::size_t axis = 0; axis < 2; ++axis) {
       const auto& p = previous_[axis];
       const double d = unwrapped_[axis] - 3.0 * p[2] + 3.0 * p[1] - p[0];

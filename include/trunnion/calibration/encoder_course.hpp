@@ -72,6 +72,7 @@ class EncoderCourse {
     double t, azimuth, pitch;
   };
   std::array<Reading, 3> recent_{};  // the middle one is judged by its neighbours
+  Reading taken_{};                  // the one before them
   std::size_t waiting_ = 0;          // of them
   double usual_departure_ = 0.0;     // rad, running mean
   long long outliers_ = 0;
