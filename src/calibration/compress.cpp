@@ -118,7 +118,7 @@ void Compressor::place(double t, const InertialSample<double>& sample) {
   t_.push_back(t);
   for (int axis = 0; axis < 3; ++axis) {
     channel_[static_cast<std::size_t>(axis)].push_back(sample.w(axis));
-    channel_[static_cast<std::size_t>(axis + 3)].push_back(sample.f(axis));
+    channel_[static_cast<std::size_t>(axis) + 3].push_back(sample.f(axis));
   }
   const bool saturated = (options_.gyro_range > 0.0 && sample.w.cwiseAbs().maxCoeff() >= options_.gyro_range) ||
                          (options_.accel_range > 0.0 && sample.f.cwiseAbs().maxCoeff() >= options_.accel_range);

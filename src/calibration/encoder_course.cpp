@@ -51,7 +51,9 @@ void EncoderCourse::add(double t, double azimuth, double pitch) {
 /// Passes on the oldest of three readings, and drops the middle one when it departs from what the others say by more
 /// than the table can accelerate in between.
 void EncoderCourse::settle() {
-  const auto& [a, b, c] = recent_;
+  const Reading& a = recent_[0];
+  const Reading& b = recent_[1];
+  const Reading& c = recent_[2];
   const double span = c.t - a.t;
   const auto departure_from = [&](const Reading& p, const Reading& q) {
     const double u = (b.t - p.t) / (q.t - p.t);
