@@ -37,7 +37,7 @@ Observability judge(const Eigen::MatrixXd& information, const std::vector<Parame
   Eigen::VectorXd diagonal(n);
   for (Eigen::Index i = 0; i < n; ++i) diagonal(i) = A(i, i) > 0.0 ? 1.0 / std::sqrt(A(i, i)) : 1.0;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(diagonal.asDiagonal() * A * diagonal.asDiagonal());
-  const Eigen::VectorXd lambda = eigen.eigenvalues();
+  const Eigen::VectorXd& lambda = eigen.eigenvalues();
   const double floor = kRankLoss * static_cast<double>(n) * std::max(lambda(n - 1), std::numeric_limits<double>::min());
 
   Observability result;
