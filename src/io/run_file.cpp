@@ -21,6 +21,7 @@ std::string beside(const std::string& file, const std::string& path) {
 
 std::size_t entry_index(const StrictYaml& map, const std::string& key) {
   std::vector<std::string> known;
+  known.reserve(kEntryKinds.size());
   for (const EntryKind& kind : kEntryKinds) known.emplace_back(kind.key);
   map.only(known);
   return static_cast<std::size_t>(std::find(known.begin(), known.end(), key) - known.begin());
