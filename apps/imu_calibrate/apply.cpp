@@ -26,7 +26,7 @@ struct Options {
 };
 
 /// Corrects samples and passes them on.
-class Corrected final : public io::SampleSink {
+class Corrected final : public SampleSink {
  public:
   using Write = std::function<void(std::int64_t, const InertialSample<double>&)>;
   Corrected(const UnitCorrection<double>& correction, Write write)

@@ -13,6 +13,7 @@
 #include "terminal.hpp"
 #include "trunnion/calibration/compress.hpp"
 #include "trunnion/calibration/rests_and_turns.hpp"
+#include "trunnion/core/error.hpp"
 #include "trunnion/core/units.hpp"
 #include "trunnion/io/lcm_recording.hpp"
 #include "trunnion/io/run_file.hpp"
@@ -31,15 +32,23 @@ struct Options {
 /// Stamps and ranges of one channel.
 class ChannelStatistics {
  public:
-  void add(std::int64_t utime, std::initializer_list<double> values) {
+  /// @return whether the stamp was the next one
+  bool add(std::int64_t utime, std::initializer_list<double> values) {
     switch (clock_.judge(utime)) {
       case calibration::ChannelClock::Verdict::kDuplicate:
         ++duplicates_;
-        return;
-      case calibration::ChannelClock::Verdict::kStray:
+        return false;
       case calibration::ChannelClock::Verdict::kReset:
+        if (!reset_) reset_at_ = utime;
+        reset_ = true;
         ++stray_;
-        return;
+        return false;
+      case calibration::ChannelClock::Verdict::kStray:
+        ++stray_;
+        return false;
+      case calibration::ChannelClock::Verdict::kNextAndFirstWasStray:
+        messages_ = 0;
+        break;
       case calibration::ChannelClock::Verdict::kNext:
         break;
     }
@@ -59,6 +68,7 @@ class ChannelStatistics {
       highest_[i] = std::max(highest_[i], value);
       ++i;
     }
+    return true;
   }
 
   [[nodiscard]] bool empty() const { return messages_ == 0; }
@@ -95,6 +105,7 @@ class ChannelStatistics {
       json["range"][names[i]] = {lowest_[i] * in_unit, highest_[i] * in_unit};
     }
     json["range_unit"] = unit;
+    if (reset_) json["clock_reset_at_utime"] = reset_at_;
     return json;
   }
 
@@ -105,17 +116,18 @@ class ChannelStatistics {
   long long messages_ = 0;
   long long duplicates_ = 0;
   long long stray_ = 0;
+  bool reset_ = false;
+  std::int64_t reset_at_ = 0;
   std::vector<float> steps_;
   std::vector<double> lowest_;
   std::vector<double> highest_;
 };
 
-class InspectSink final : public io::SampleSink {
+class InspectSink final : public SampleSink {
  public:
   explicit InspectSink(const std::string& name) : parts_(name) {}
   void imu(std::int64_t utime, const InertialSample<double>& s) override {
-    imu_.add(utime, {s.w.x(), s.w.y(), s.w.z(), s.f.x(), s.f.y(), s.f.z()});
-    parts_.imu(utime, s);
+    if (imu_.add(utime, {s.w.x(), s.w.y(), s.w.z(), s.f.x(), s.f.y(), s.f.z()})) parts_.imu(utime, s);
   }
   void encoder(std::int64_t utime, double azimuth, double pitch) override { encoder_.add(utime, {azimuth, pitch}); }
 
@@ -123,14 +135,10 @@ class InspectSink final : public io::SampleSink {
     Json json;
     if (!imu_.empty()) {
       json["imu"] = imu_.summary({"gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z"}, 1.0, "rad/s, m/s^2");
-      const calibration::HandRecording parts = parts_.finish(0.0, 0.0);
-      double at_rest = 0.0;
-      for (const calibration::Rest& rest : parts.rests) at_rest += rest.end - rest.begin;
-      json["rests"] = {{"count", parts.rests.size()}, {"total_s", at_rest}};
-      json["turns"] = {{"count", parts.turns.size()}};
-      if (!parts.rests.empty()) {
-        json["noise_at_rest"] = {{"gyro_deg_per_h_per_rt_hz", parts.noise.gyro.density / kRadPerSPerDegPerH},
-                                 {"accel_ug_per_rt_hz", parts.noise.accel.density / kMetresPerS2PerMicroG}};
+      try {
+        add_parts(parts_.finish({}), json);
+      } catch (const Error& e) {
+        json["refused"] = e.what();
       }
     }
     if (!encoder_.empty()) json["encoder"] = encoder_.summary({"azimuth", "pitch"}, 1.0 / kRadPerDeg, "deg");
@@ -138,6 +146,16 @@ class InspectSink final : public io::SampleSink {
   }
 
  private:
+  static void add_parts(const calibration::HandRecording& parts, Json& json) {
+    double at_rest = 0.0;
+    for (const calibration::Rest& rest : parts.rests) at_rest += rest.end - rest.begin;
+    json["rests"] = {{"count", parts.rests.size()}, {"total_s", at_rest}};
+    json["turns"] = {{"count", parts.turns.size()}};
+    if (parts.rests.empty()) return;
+    json["noise_at_rest"] = {{"gyro_deg_per_h_per_rt_hz", parts.noise.gyro.density / kRadPerSPerDegPerH},
+                             {"accel_ug_per_rt_hz", parts.noise.accel.density / kMetresPerS2PerMicroG}};
+  }
+
   ChannelStatistics imu_;
   ChannelStatistics encoder_;
   calibration::RestsAndTurns parts_;
@@ -164,6 +182,14 @@ Json inspect_recording(const io::RunFile& run, const io::RecordingFiles& files) 
   return json;
 }
 
+/// Names in a log are anybody's: control bytes do not reach the terminal.
+std::string printable(std::string name) {
+  for (char& c : name) {
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+  }
+  return name;
+}
+
 void print_channel(const char* name, const Json& c) {
   std::printf(
       "  %-8s %10lld messages  %9.3f Hz  jitter %.1f us  %lld gaps (%lld missing, longest %.4f s)  %lld duplicates  "
@@ -175,6 +201,10 @@ void print_channel(const char* name, const Json& c) {
   for (const auto& [axis, range] : c["range"].items())
     std::printf(" %s %.4g..%.4g", axis.c_str(), range[0].get<double>(), range[1].get<double>());
   std::printf(" (%s)\n", c["range_unit"].get<std::string>().c_str());
+  if (c.contains("clock_reset_at_utime")) {
+    std::printf("           the clock was reset: stamps went to utime %lld and stayed there\n",
+                c["clock_reset_at_utime"].get<long long>());
+  }
 }
 
 void print_text(const Json& all) {
@@ -184,12 +214,14 @@ void print_text(const Json& all) {
     if (one.contains("channels")) {
       std::printf("  channels:");
       for (const auto& [channel, messages] : one["channels"].items())
-        std::printf(" %s (%lld)", channel.c_str(), messages.get<long long>());
+        std::printf(" %s (%lld)", printable(channel).c_str(), messages.get<long long>());
       std::printf("; lost %lld records, %lld bytes\n", one["lost"]["records"].get<long long>(),
                   one["lost"]["bytes"].get<long long>());
     }
     if (one.contains("imu")) print_channel("IMU", one["imu"]);
     if (one.contains("encoder")) print_channel("encoder", one["encoder"]);
+    if (one.contains("refused"))
+      std::printf("  solve would refuse it: %s\n", one["refused"].get<std::string>().c_str());
     if (one.contains("rests")) {
       std::printf("  %lld rests, %.1f s in all; %lld turns between them\n", one["rests"]["count"].get<long long>(),
                   one["rests"]["total_s"].get<double>(), one["turns"]["count"].get<long long>());

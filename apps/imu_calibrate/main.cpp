@@ -46,4 +46,10 @@ ExitCode run_command(std::vector<std::string> arguments) {
 
 }  // namespace trunnion::app
 
-int main(int argc, char** argv) { return static_cast<int>(trunnion::app::run_command({argv + 1, argv + argc})); }
+int main(int argc, char** argv) {
+  try {
+    return static_cast<int>(trunnion::app::run_command({argv + 1, argv + argc}));
+  } catch (...) {
+    return static_cast<int>(trunnion::ExitCode::kDefect);
+  }
+}

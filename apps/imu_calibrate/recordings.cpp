@@ -8,6 +8,7 @@
 #include <exception>
 #include <filesystem>
 #include <mutex>
+#include <system_error>
 #include <thread>
 
 #include "terminal.hpp"
@@ -15,28 +16,6 @@
 
 namespace trunnion::app {
 namespace {
-
-class ToCompressor final : public io::SampleSink {
- public:
-  explicit ToCompressor(calibration::Compressor& compressor) : compressor_(compressor) {}
-  void imu(std::int64_t utime, const InertialSample<double>& sample) override { compressor_.imu(utime, sample); }
-  void encoder(std::int64_t utime, double azimuth, double pitch) override {
-    compressor_.encoder(utime, azimuth, pitch);
-  }
-
- private:
-  calibration::Compressor& compressor_;
-};
-
-class ToRestsAndTurns final : public io::SampleSink {
- public:
-  explicit ToRestsAndTurns(calibration::RestsAndTurns& parts) : parts_(parts) {}
-  void imu(std::int64_t utime, const InertialSample<double>& sample) override { parts_.imu(utime, sample); }
-  void encoder(std::int64_t, double, double) override {}
-
- private:
-  calibration::RestsAndTurns& parts_;
-};
 
 /// Calls job(i) for i in [0, n), on as many threads as the machine has. Throws the first exception by index.
 template <class Job>
@@ -53,8 +32,12 @@ void for_each_recording(std::size_t n, const Job& job) {
     }
   };
   std::vector<std::thread> threads;
-  for (std::size_t t = 1; t < std::min<std::size_t>(n, std::max(1U, std::thread::hardware_concurrency())); ++t)
-    threads.emplace_back(work);
+  try {
+    for (std::size_t t = 1; t < std::min<std::size_t>(n, std::max(1U, std::thread::hardware_concurrency())); ++t)
+      threads.emplace_back(work);
+  } catch (const std::system_error&) {
+    // no more threads to be had: those there are do the work
+  }
   work();
   for (std::thread& thread : threads) thread.join();
   for (const std::exception_ptr& one : failed) {
@@ -113,11 +96,9 @@ std::vector<calibration::TableRecording> read_table_recordings(const io::RunFile
     calibration::CompressOptions options;
     options.name = files.name();
     options.period = run.sheet.rate_hz > 0.0 ? 1.0 / run.sheet.rate_hz : 0.0;
-    options.gyro_range = run.sheet.gyro_range;
-    options.accel_range = run.sheet.accel_range;
+    options.range = {run.sheet.gyro_range, run.sheet.accel_range};
     calibration::Compressor compressor(options);
-    ToCompressor sink(compressor);
-    each[i].losses = io::read_recording(run, files, sink, each[i].digests, progress.of(i));
+    each[i].losses = io::read_recording(run, files, compressor, each[i].digests, progress.of(i));
     recordings[i].data = compressor.finish();
     recordings[i].mount = static_cast<int>(std::find(mounts.begin(), mounts.end(), files.mount) - mounts.begin());
   });
@@ -131,9 +112,8 @@ std::vector<calibration::HandRecording> read_hand_recordings(const io::RunFile& 
   ReadProgress progress(run.recordings.size());
   for_each_recording(run.recordings.size(), [&](std::size_t i) {
     calibration::RestsAndTurns parts(run.recordings[i].name());
-    ToRestsAndTurns sink(parts);
-    each[i].losses = io::read_recording(run, run.recordings[i], sink, each[i].digests, progress.of(i));
-    recordings[i] = parts.finish(run.sheet.gyro_range, run.sheet.accel_range);
+    each[i].losses = io::read_recording(run, run.recordings[i], parts, each[i].digests, progress.of(i));
+    recordings[i] = parts.finish({run.sheet.gyro_range, run.sheet.accel_range});
   });
   collect(inputs, each);
   return recordings;

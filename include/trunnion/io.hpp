@@ -13,6 +13,5 @@
 #include "trunnion/io/lcm_log.hpp"
 #include "trunnion/io/lcm_recording.hpp"
 #include "trunnion/io/run_file.hpp"
-#include "trunnion/io/sample_sink.hpp"
 #include "trunnion/io/sensor_sheet.hpp"
 #include "trunnion/io/whole_file.hpp"

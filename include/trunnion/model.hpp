@@ -12,6 +12,7 @@
 #include "trunnion/positions/calibration_record.hpp"
 #include "trunnion/positions/entry.hpp"
 #include "trunnion/positions/observation.hpp"
+#include "trunnion/positions/sample_sink.hpp"
 #include "trunnion/positions/twelve.hpp"
 #include "trunnion/turntable/encoder.hpp"
 #include "trunnion/turntable/rig.hpp"

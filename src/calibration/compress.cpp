@@ -19,7 +19,6 @@ constexpr double kOutlierSigmas = 8.0;
 constexpr double kHarmless =
     1e-5;  // of the triad's largest reading in the window: one such sample costs 0.3 ppm of the window
 constexpr double kRunningWeight = 0.05;
-constexpr double kSaturatedFraction = 1e-3;
 constexpr double kPeriodTolerance = 0.02;  // of the sheet's period
 constexpr double kSlowestPeriod = 0.1;     // s
 
@@ -48,31 +47,16 @@ double Compressor::seconds(std::int64_t utime) {
     has_origin_ = true;
     origin_ = utime;
   }
-  return 1e-6 * static_cast<double>(
-                    static_cast<std::int64_t>(static_cast<std::uint64_t>(utime) - static_cast<std::uint64_t>(origin_)));
-}
-
-/// Whether a stamp is the next one of its channel; counts those that are not.
-bool Compressor::accept(ChannelClock& clock, std::int64_t utime, const char* channel) {
-  switch (clock.judge(utime)) {
-    case ChannelClock::Verdict::kNext:
-      return true;
-    case ChannelClock::Verdict::kDuplicate:
-      ++result_.figures.duplicates;
-      return false;
-    case ChannelClock::Verdict::kStray:
-      ++result_.figures.stray;
-      return false;
-    case ChannelClock::Verdict::kReset:
-      break;
-  }
-  throw Error(ExitCode::kInput, options_.name + ": the clock of the " + channel +
-                                    " channel was reset: its stamps went to utime " + std::to_string(utime) +
-                                    " and stayed there; split the recording at that point");
+  return 1e-6 * static_cast<double>(ChannelClock::difference(utime, origin_));
 }
 
 void Compressor::imu(std::int64_t utime, const InertialSample<double>& sample) {
-  if (!accept(imu_clock_, utime, "IMU")) return;
+  const auto verdict = judge_and_count(imu_clock_, utime, options_.name, "IMU", result_.figures);
+  if (verdict == ChannelClock::Verdict::kNextAndFirstWasStray) {
+    early_.clear();
+  } else if (verdict != ChannelClock::Verdict::kNext) {
+    return;
+  }
   const double t = seconds(utime);
   if (result_.figures.period > 0.0) {
     place(t, sample);
@@ -82,19 +66,24 @@ void Compressor::imu(std::int64_t utime, const InertialSample<double>& sample) {
   if (early_.size() < kSamplesForPeriod) return;
   scratch_.clear();
   for (std::size_t i = 1; i < early_.size(); ++i) scratch_.push_back(early_[i].t - early_[i - 1].t);
-  const auto middle = scratch_.begin() + static_cast<std::ptrdiff_t>(scratch_.size() / 2);
-  std::nth_element(scratch_.begin(), middle, scratch_.end());
-  if (options_.period > 0.0 && std::abs(*middle / options_.period - 1.0) > kPeriodTolerance) {
-    throw Error(ExitCode::kInput, options_.name + ": the samples come at " + std::to_string(1.0 / *middle) +
+  const double found = sample_period(scratch_, options_.name);
+  if (options_.period > 0.0 && std::abs(found / options_.period - 1.0) > kPeriodTolerance) {
+    throw Error(ExitCode::kInput, options_.name + ": the samples come at " + std::to_string(1.0 / found) +
                                       " Hz, the sheet's rate_hz says " + std::to_string(1.0 / options_.period));
   }
-  result_.figures.period = options_.period > 0.0 ? options_.period : *middle;
+  result_.figures.period = options_.period > 0.0 ? options_.period : found;
   for (const Early& e : early_) place(e.t, e.sample);
   early_ = {};
 }
 
 void Compressor::encoder(std::int64_t utime, double azimuth, double pitch) {
-  if (accept(encoder_clock_, utime, "encoder")) result_.course.add(seconds(utime), azimuth, pitch);
+  const auto verdict = judge_and_count(encoder_clock_, utime, options_.name, "encoder", result_.figures);
+  if (verdict == ChannelClock::Verdict::kNextAndFirstWasStray) {
+    result_.course = EncoderCourse();
+  } else if (verdict != ChannelClock::Verdict::kNext) {
+    return;
+  }
+  result_.course.add(seconds(utime), azimuth, pitch);
 }
 
 void Compressor::place(double t, const InertialSample<double>& sample) {
@@ -120,8 +109,7 @@ void Compressor::place(double t, const InertialSample<double>& sample) {
     channel_[static_cast<std::size_t>(axis)].push_back(sample.w(axis));
     channel_[static_cast<std::size_t>(axis) + 3].push_back(sample.f(axis));
   }
-  const bool saturated = (options_.gyro_range > 0.0 && sample.w.cwiseAbs().maxCoeff() >= options_.gyro_range) ||
-                         (options_.accel_range > 0.0 && sample.f.cwiseAbs().maxCoeff() >= options_.accel_range);
+  const bool saturated = options_.range.saturated(sample);
   bad_.push_back(saturated ? 1 : 0);
   if (saturated) {
     if (result_.figures.saturated == 0) result_.figures.first_saturated = t - t_first_;
@@ -240,13 +228,7 @@ CompressedRecording Compressor::finish() {
   }
   if (!t_.empty()) close_window();
   figures.duration = t_last_ - t_first_;
-  const long long offered = figures.samples + figures.saturated + figures.outliers;
-  if (static_cast<double>(figures.saturated) > kSaturatedFraction * static_cast<double>(offered)) {
-    throw Error(ExitCode::kInput, options_.name + ": saturated: " + std::to_string(figures.saturated) + " of " +
-                                      std::to_string(offered) + " samples at or past the sheet's range, first at " +
-                                      std::to_string(figures.first_saturated) +
-                                      " s; turn slower, or correct the range in the sheet");
-  }
+  check_samples(figures, options_.name);
   result_.course.finish();
   return std::move(result_);
 }

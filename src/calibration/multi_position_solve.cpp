@@ -140,25 +140,52 @@ struct RestResidual {
   }
 };
 
+/// log((q_before turn exp(correction))^-1 q_after) / sigma
 struct TurnResidual {
   const TurnRotation* rotation;
-  const double* x0;  // where it was integrated
   double sigma;
 
   template <class T>
-  bool operator()(T const* const* parameters, T* residual) const {
-    const Eigen::Map<const Quaternion<T>> q_before(parameters[1]);
-    const Eigen::Map<const Quaternion<T>> q_after(parameters[2]);
-    Vec3<T> correction = Vec3<T>::Zero();
-    for (Eigen::Index i = 0; i < rotation->J.cols(); ++i) {
-      const T step = parameters[0][i] - T(x0[i]);
-      for (int j = 0; j < 3; ++j) correction(j) += T(rotation->J(j, i)) * step;
-    }
-    const Quaternion<T> predicted = q_before * rotation->q.cast<T>() * quaternion_exp<T>(correction);
-    const Vec3<T> r = quaternion_log<T>(Quaternion<T>(predicted.conjugate() * q_after)) / T(sigma);
-    for (int i = 0; i < 3; ++i) residual[i] = r(i);
+  bool operator()(const T* correction, const T* before, const T* after, T* residual) const {
+    const Quaternion<T> predicted = Eigen::Map<const Quaternion<T>>(before) * rotation->q.cast<T>() *
+                                    quaternion_exp<T>(Eigen::Map<const Vec3<T>>(correction));
+    Eigen::Map<Vec3<T>> r(residual);
+    r = quaternion_log<T>(Quaternion<T>(predicted.conjugate() * Eigen::Map<const Quaternion<T>>(after))) / T(sigma);
     return true;
   }
+};
+
+/// TurnResidual of correction = J (x - x0): differentiated by three corrections, not by all unknowns.
+class TurnCost final : public ceres::CostFunction {
+ public:
+  TurnCost(const TurnRotation* rotation, const double* x0, double sigma)
+      : rotation_(rotation), x0_(x0, rotation->J.cols()), by_correction_(new TurnResidual{rotation, sigma}) {
+    set_num_residuals(3);
+    *mutable_parameter_block_sizes() = {static_cast<int>(rotation->J.cols()), 4, 4};
+  }
+
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
+    const Eigen::Map<const Eigen::VectorXd> x(parameters[0], x0_.size());
+    const Vec3<double> correction = rotation_->J * (x - x0_);
+    const double* blocks[] = {correction.data(), parameters[1], parameters[2]};
+    Eigen::Matrix<double, 3, 3, Eigen::RowMajor> J;
+    double* by[] = {J.data(), nullptr, nullptr};
+    if (jacobians != nullptr) {
+      by[1] = jacobians[1];
+      by[2] = jacobians[2];
+    }
+    if (!by_correction_.Evaluate(blocks, residuals, jacobians != nullptr ? by : nullptr)) return false;
+    if (jacobians != nullptr && jacobians[0] != nullptr) {
+      Eigen::Map<Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor>>(jacobians[0], 3, x0_.size()).noalias() =
+          J * rotation_->J;
+    }
+    return true;
+  }
+
+ private:
+  const TurnRotation* rotation_;
+  Eigen::Map<const Eigen::VectorXd> x0_;
+  ceres::AutoDiffCostFunction<TurnResidual, 3, 3, 4, 4> by_correction_;
 };
 
 /// (x - mean) / sigma of one scaled unknown.
@@ -364,8 +391,9 @@ class HandProblem {
         Quaternion<double>& before = attitude_[first_rest_[r] + turn.from];
         Quaternion<double>& after = attitude_[first_rest_[r] + turn.from + 1];
         const double white = white_turn(*rotation);
-        add(new TurnResidual{&*rotation++, x0_.data(), std::sqrt(white + component_[kTurns])}, 3,
-            new ceres::HuberLoss(kHuber), {x_.data(), before.coeffs().data(), after.coeffs().data()}, {n, 4, 4});
+        problem.AddResidualBlock(new TurnCost(&*rotation++, x0_.data(), std::sqrt(white + component_[kTurns])),
+                                 new ceres::HuberLoss(kHuber), x_.data(), before.coeffs().data(),
+                                 after.coeffs().data());
         for (int i = 0; i < 3; ++i) rows_.push_back({kTurns, white});
       }
     }
@@ -390,8 +418,8 @@ class HandProblem {
     solver.logging_type = ceres::SILENT;
     ceres::Solver::Summary summary;
     ceres::Solve(solver, &problem, &summary);
-    if (summary.termination_type == ceres::FAILURE)
-      throw Error(ExitCode::kNumerics, "the solve did not converge: " + summary.message);
+    if (!summary.IsSolutionUsable()) throw Error(ExitCode::kNumerics, "the solve did not converge: " + summary.message);
+    converged_ = summary.termination_type == ceres::CONVERGENCE;
     for (Quaternion<double>& q : attitude_) q.normalize();
     return static_cast<int>(summary.iterations.size());
   }
@@ -489,6 +517,9 @@ class HandProblem {
     s.x = x_;
     for (int i = 0; i < n; ++i) s.x(i) *= scale(i);
     s.observability = judge(information, layout_.parameters);
+    // along a direction that the data do not hold, the steps never end: the gate names it
+    if (!converged_ && s.observability.refused.empty())
+      throw Error(ExitCode::kNumerics, "the solve did not converge in " + std::to_string(iterations) + " iterations");
     s.noise = noise_;
     s.gauge = {"accelerometer_z_along_case_z", "accelerometer_y_in_case_yz_plane"};
     CalibrationRecord& record = s.record;
@@ -527,6 +558,7 @@ class HandProblem {
   std::vector<Quaternion<double>> head_start_;
   std::vector<TurnRotation> rotations_;
   std::vector<RowOf> rows_;
+  bool converged_ = false;
   std::array<double, kComponents> component_ = {kFirstForce * kFirstForce, kFirstRate* kFirstRate,
                                                 kFirstTurn* kFirstTurn};
 };

@@ -18,6 +18,8 @@ constexpr double kScatterFactor = 3.0;
 constexpr double kRestRate = 0.005;  // rad/s: what g-sensitivity may change between rests
 constexpr double kTurnStep = 0.005;  // s
 constexpr double kGap = 5.0;         // periods
+constexpr double kUsualQuantile = 0.99;
+constexpr double kOutlierFactor = 20.0;  // against that quantile
 
 struct Block {
   std::size_t first, last;  // samples [first, last)
@@ -36,44 +38,57 @@ double quantile(std::vector<double> v, double q) {
 }  // namespace
 
 void RestsAndTurns::imu(std::int64_t utime, const InertialSample<double>& sample) {
-  switch (clock_.judge(utime)) {
-    case ChannelClock::Verdict::kDuplicate:
-      ++result_.figures.duplicates;
-      return;
-    case ChannelClock::Verdict::kStray:
-      ++result_.figures.stray;
-      return;
-    case ChannelClock::Verdict::kReset:
-      throw Error(ExitCode::kInput, result_.name +
-                                        ": the clock of the IMU channel was reset: its stamps went to utime " +
-                                        std::to_string(utime) + " and stayed there; split the recording at that point");
-    case ChannelClock::Verdict::kNext:
-      break;
+  const auto verdict = judge_and_count(clock_, utime, result_.name, "IMU", result_.figures);
+  if (verdict == ChannelClock::Verdict::kNextAndFirstWasStray) {
+    samples_.clear();
+  } else if (verdict != ChannelClock::Verdict::kNext) {
+    return;
   }
   if (samples_.empty()) origin_ = utime;
   samples_.push_back({1e-6 * static_cast<double>(ChannelClock::difference(utime, origin_)), sample});
 }
 
-HandRecording RestsAndTurns::finish(double gyro_range, double accel_range) {
+void RestsAndTurns::encoder(std::int64_t, double, double) {}
+
+/// Of each axis, how far every sample lies from the median of itself and its neighbours: a turn by hand, and noise,
+/// make that small everywhere, a spike large at one place.
+void RestsAndTurns::mend_outliers() {
+  const std::size_t n = samples_.size();
+  std::vector<double> lonely(n - 2);
+  std::vector<bool> mended(n, false);
+  for (int axis = 0; axis < 6; ++axis) {
+    const auto at = [&](std::size_t i) -> double& {
+      return axis < 3 ? samples_[i].value.w(axis) : samples_[i].value.f(axis - 3);
+    };
+    const auto between = [&](std::size_t i) {
+      return std::max(std::min(at(i - 1), at(i + 1)), std::min(at(i), std::max(at(i - 1), at(i + 1))));
+    };
+    for (std::size_t i = 1; i + 1 < n; ++i) lonely[i - 1] = std::abs(at(i) - between(i));
+    const double limit = kOutlierFactor * quantile(lonely, kUsualQuantile);
+    if (!(limit > 0.0)) continue;
+    for (std::size_t i = 1; i + 1 < n; ++i) {
+      if (std::abs(at(i) - between(i)) <= limit) continue;
+      at(i) = 0.5 * (at(i - 1) + at(i + 1));
+      mended[i] = true;
+    }
+  }
+  result_.figures.outliers = std::count(mended.begin(), mended.end(), true);
+}
+
+HandRecording RestsAndTurns::finish(const SensorRange& range) {
   RecordingFigures& figures = result_.figures;
   const std::size_t n = samples_.size();
   if (n < 100) throw Error(ExitCode::kInput, result_.name + ": only " + std::to_string(n) + " usable IMU samples");
   std::vector<double> step(n - 1);
   for (std::size_t i = 1; i < n; ++i) step[i - 1] = samples_[i].t - samples_[i - 1].t;
-  figures.period = quantile(step, 0.5);
-  figures.samples = static_cast<long long>(n);
+  figures.period = sample_period(step, result_.name);
   figures.duration = samples_.back().t;
   for (const Sample& s : samples_) {
-    const bool saturated = (gyro_range > 0.0 && s.value.w.cwiseAbs().maxCoeff() >= gyro_range) ||
-                           (accel_range > 0.0 && s.value.f.cwiseAbs().maxCoeff() >= accel_range);
-    if (saturated && ++figures.saturated == 1) figures.first_saturated = s.t;
+    if (range.saturated(s.value) && ++figures.saturated == 1) figures.first_saturated = s.t;
   }
-  if (static_cast<double>(figures.saturated) > 1e-3 * static_cast<double>(n)) {
-    throw Error(ExitCode::kInput, result_.name + ": saturated: " + std::to_string(figures.saturated) + " of " +
-                                      std::to_string(n) + " samples at or past the sheet's range, first at " +
-                                      std::to_string(figures.first_saturated) +
-                                      " s; turn slower, or correct the range in the sheet");
-  }
+  mend_outliers();
+  figures.samples = static_cast<long long>(n) - figures.saturated - figures.outliers;
+  check_samples(figures, result_.name);
 
   std::vector<Block> blocks;
   const auto length = static_cast<std::size_t>(std::max(4.0, std::round(kBlock / figures.period)));

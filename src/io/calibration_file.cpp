@@ -136,20 +136,23 @@ void print(const Json& value, int indent, std::string& out) {
 }
 
 void read_triads(const StrictYaml& root, bool sigma, InertialUnit<double>& unit) {
+  const StrictYaml::Scalar scalar = sigma ? &StrictYaml::sigma : &StrictYaml::number;
   const auto matrix = [&](const StrictYaml& node) -> Mat3<double> {
-    return sigma ? node.matrix() : Mat3<double>(node.matrix() - Mat3<double>::Identity());
+    Mat3<double> M = node.matrix(scalar);
+    if (!sigma) M.diagonal().array() -= 1.0;
+    return M;
   };
   const StrictYaml gyro = root.at("gyroscope");
   gyro.only({"bias_rad_s", "matrix", "cubic_s2_rad2", "g_sensitivity_s_m"});
-  unit.gyro.bias = gyro.at("bias_rad_s").vector();
+  unit.gyro.bias = gyro.at("bias_rad_s").vector(scalar);
   unit.gyro.M = matrix(gyro.at("matrix"));
-  if (gyro.has("cubic_s2_rad2")) unit.gyro.cubic = gyro.at("cubic_s2_rad2").vector();
-  if (gyro.has("g_sensitivity_s_m")) unit.g_sensitivity = gyro.at("g_sensitivity_s_m").matrix();
+  if (gyro.has("cubic_s2_rad2")) unit.gyro.cubic = gyro.at("cubic_s2_rad2").vector(scalar);
+  if (gyro.has("g_sensitivity_s_m")) unit.g_sensitivity = gyro.at("g_sensitivity_s_m").matrix(scalar);
   const StrictYaml accel = root.at("accelerometer");
   accel.only({"bias_m_s2", "matrix", "quadratic_s2_m"});
-  unit.accel.bias = accel.at("bias_m_s2").vector();
+  unit.accel.bias = accel.at("bias_m_s2").vector(scalar);
   unit.accel.M = matrix(accel.at("matrix"));
-  if (accel.has("quadratic_s2_m")) unit.accel.quadratic = accel.at("quadratic_s2_m").vector();
+  if (accel.has("quadratic_s2_m")) unit.accel.quadratic = accel.at("quadratic_s2_m").vector(scalar);
   if (!sigma) {
     for (const auto& [node, triad] : {std::pair{gyro, &unit.gyro}, std::pair{accel, &unit.accel}}) {
       if (!(std::abs(triad->matrix().determinant()) > 1e-6)) node.at("matrix").fail("cannot be inverted");
@@ -157,24 +160,24 @@ void read_triads(const StrictYaml& root, bool sigma, InertialUnit<double>& unit)
   }
 }
 
-double number_or_null(const StrictYaml& node) { return node.is_null() ? 0.0 : node.number(); }
-
-void read_rig(const StrictYaml& rig, CalibrationValues& v, std::vector<std::string>& mounts) {
+void read_rig(const StrictYaml& rig, bool sigma, CalibrationValues& v, std::vector<std::string>& mounts) {
+  const StrictYaml::Scalar scalar = sigma ? &StrictYaml::sigma : &StrictYaml::number;
+  const auto number = [&](const StrictYaml& node) { return (node.*scalar)(); };
   rig.only({"base_tilt_rad", "heading_rad", "axis_nonorthogonality_rad", "encoder_eccentricity_rad", "mount_error_rad",
             "imu_to_encoder_offset_s", "lever_arm_m"});
   const StrictYaml tilt = rig.at("base_tilt_rad");
   if (tilt.length() != 2) tilt.fail("should be two numbers");
-  v.rig.tilt_x = number_or_null(tilt.at(0));
-  v.rig.tilt_y = number_or_null(tilt.at(1));
-  v.rig.heading = number_or_null(rig.at("heading_rad"));
-  v.rig.nonorthogonality = number_or_null(rig.at("axis_nonorthogonality_rad"));
+  v.rig.tilt_x = number(tilt.at(0));
+  v.rig.tilt_y = number(tilt.at(1));
+  v.rig.heading = number(rig.at("heading_rad"));
+  v.rig.nonorthogonality = number(rig.at("axis_nonorthogonality_rad"));
   const StrictYaml eccentricity = rig.at("encoder_eccentricity_rad");
   if (eccentricity.length() != 2) eccentricity.fail("should be two pairs");
   for (std::size_t a = 0; a < 2; ++a) {
     if (eccentricity.at(a).length() != 2) eccentricity.at(a).fail("should be a pair");
-    v.rig.eccentricity[a] = {number_or_null(eccentricity.at(a).at(0)), number_or_null(eccentricity.at(a).at(1))};
+    v.rig.eccentricity[a] = {number(eccentricity.at(a).at(0)), number(eccentricity.at(a).at(1))};
   }
-  v.clock_offset = number_or_null(rig.at("imu_to_encoder_offset_s"));
+  v.clock_offset = number(rig.at("imu_to_encoder_offset_s"));
   const StrictYaml levers = rig.at("lever_arm_m");
   if (mounts.empty()) mounts = levers.keys();
   if (mounts.empty() || mounts.size() > kMaxMounts)
@@ -182,8 +185,8 @@ void read_rig(const StrictYaml& rig, CalibrationValues& v, std::vector<std::stri
   levers.only(mounts);
   rig.at("mount_error_rad").only(mounts);
   for (std::size_t m = 0; m < mounts.size(); ++m) {
-    v.lever_arm[m] = levers.at(mounts[m]).vector();
-    if (m > 0) v.mount_error[m] = rig.at("mount_error_rad").at(mounts[m]).vector();
+    v.lever_arm[m] = levers.at(mounts[m]).vector(scalar);
+    if (m > 0) v.mount_error[m] = rig.at("mount_error_rad").at(mounts[m]).vector(scalar);
   }
 }
 
@@ -213,12 +216,12 @@ CalibrationFile read_calibration_file(const std::string& path) {
   CalibrationRecord& r = file.record;
   read_triads(root, false, r.value.unit);
   r.has_rig = root.has("rig");
-  if (r.has_rig) read_rig(root.at("rig"), r.value, file.mounts);
+  if (r.has_rig) read_rig(root.at("rig"), false, r.value, file.mounts);
   if (root.has("sigma")) {
     const StrictYaml sigma = root.at("sigma");
     sigma.only({"gyroscope", "accelerometer", "rig"});
     read_triads(sigma, true, r.sigma.unit);
-    if (sigma.has("rig") && r.has_rig) read_rig(sigma.at("rig"), r.sigma, file.mounts);
+    if (sigma.has("rig") && r.has_rig) read_rig(sigma.at("rig"), true, r.sigma, file.mounts);
   }
   r.mounts = static_cast<int>(file.mounts.size());
   if (root.has("recordings")) {
@@ -241,7 +244,12 @@ CalibrationFile read_calibration_file(const std::string& path) {
   if (root.has("gauge")) {
     for (std::size_t i = 0; i < root.at("gauge").length(); ++i) file.gauge.push_back(root.at("gauge").at(i).text());
   }
-  if (root.has("verdict")) file.within_limits = root.at("verdict").text() == "within_limits";
+  if (root.has("verdict")) {
+    const std::string verdict = root.at("verdict").text();
+    if (verdict != "within_limits" && verdict != "out_of_limits")
+      root.at("verdict").fail("should be within_limits or out_of_limits");
+    file.within_limits = verdict == "within_limits";
+  }
   return file;
 }
 

@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <vector>
 
 #include "strict_yaml.hpp"
@@ -53,6 +54,7 @@ struct Column {
   std::size_t index = 0;
   double si = 1.0;
   double zero = 0.0;
+  double largest = std::numeric_limits<double>::infinity();
 };
 
 bool starts_number(const char* p, const char* end) {
@@ -103,6 +105,7 @@ class Table {
           if (unit == units.first[i].name) column.si = units.first[i].si;
         }
       }
+      if (quantity != "t") column.largest = kLargestReading;
       columns_.push_back(column);
       last_ = std::max(last_, column.index);
     }
@@ -147,7 +150,7 @@ class Table {
       const double cell = cells_[columns_[i].index];
       if (!std::isfinite(cell)) throw input_error(path_, line_, columns_[i].quantity, "is not finite");
       value[i] = (cell - columns_[i].zero) * columns_[i].si;
-      if (columns_[i].quantity != "t" && std::abs(value[i]) > kLargestReading) {
+      if (std::abs(value[i]) > columns_[i].largest) {
         throw input_error(path_, line_, columns_[i].quantity, "is beyond any sensor");
       }
     }
@@ -251,11 +254,6 @@ std::int64_t to_utime(double t, const Table& table) {
 }
 
 }  // namespace
-
-bool is_quantity(const std::string& name) {
-  return name == "t" || name == "azimuth" || name == "pitch" ||
-         std::find(kSensors.begin(), kSensors.end(), name) != kSensors.end();
-}
 
 bool unit_fits(const std::string& quantity, const std::string& unit, std::string& expected) {
   const Units units = units_of(quantity);

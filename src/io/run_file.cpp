@@ -19,6 +19,8 @@ std::string beside(const std::string& file, const std::string& path) {
   return p.is_absolute() ? path : (std::filesystem::path(file).parent_path() / p).lexically_normal().string();
 }
 
+constexpr const char* kNoRig = "the run has no rig: name its URDF under rig, or leave the encoder out";
+
 std::size_t entry_index(const StrictYaml& map, const std::string& key) {
   std::vector<std::string> known;
   known.reserve(kEntryKinds.size());
@@ -29,9 +31,8 @@ std::size_t entry_index(const StrictYaml& map, const std::string& key) {
 
 ColumnMap read_columns(const StrictYaml& node) {
   ColumnMap columns;
+  node.only({"t", "gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z", "azimuth", "pitch"});
   for (const std::string& quantity : node.keys()) {
-    if (!is_quantity(quantity))
-      node.only({"t", "gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z", "azimuth", "pitch"});
     const StrictYaml entry = node.at(quantity);
     entry.only({"column", "unit"});
     ColumnChoice choice;
@@ -64,10 +65,12 @@ RecordingFiles read_files(const StrictYaml& node, const std::string& run, bool h
     log.only({"gyro", "accel", "encoder"});
     files.gyro = beside(run, log.at("gyro").text());
     files.accel = beside(run, log.at("accel").text());
+    if (log.has("encoder") && !has_rig) log.at("encoder").fail(kNoRig);
     if (has_rig) files.encoder = beside(run, log.at("encoder").text());
   } else {
     log.only({"imu", "encoder"});
     files.imu = beside(run, log.at("imu").text());
+    if (log.has("encoder") && !has_rig) log.at("encoder").fail(kNoRig);
     if (has_rig) files.encoder = beside(run, log.at("encoder").text());
   }
   return files;

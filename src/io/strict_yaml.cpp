@@ -174,17 +174,24 @@ long long StrictYaml::integer() const {
   return static_cast<long long>(value);
 }
 
-Vec3<double> StrictYaml::vector() const {
+double StrictYaml::sigma() const {
+  if (is_null()) return 0.0;
+  const double value = number();
+  if (value < 0.0) fail("is a sigma, and negative");
+  return value;
+}
+
+Vec3<double> StrictYaml::vector(Scalar read) const {
   if (length() != 3) fail("should be a list of three numbers");
   Vec3<double> v;
-  for (std::size_t i = 0; i < 3; ++i) v(static_cast<Eigen::Index>(i)) = at(i).is_null() ? 0.0 : at(i).number();
+  for (std::size_t i = 0; i < 3; ++i) v(static_cast<Eigen::Index>(i)) = (at(i).*read)();
   return v;
 }
 
-Mat3<double> StrictYaml::matrix() const {
+Mat3<double> StrictYaml::matrix(Scalar read) const {
   if (length() != 3) fail("should be three rows of three numbers");
   Mat3<double> M;
-  for (std::size_t i = 0; i < 3; ++i) M.row(static_cast<Eigen::Index>(i)) = at(i).vector().transpose();
+  for (std::size_t i = 0; i < 3; ++i) M.row(static_cast<Eigen::Index>(i)) = at(i).vector(read).transpose();
   return M;
 }
 

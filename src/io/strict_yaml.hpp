@@ -38,8 +38,11 @@ class StrictYaml {
   [[nodiscard]] bool is_sequence() const { return node_.IsSequence(); }
   [[nodiscard]] bool is_null() const { return node_.IsNull(); }
   [[nodiscard]] bool is_number() const;
-  [[nodiscard]] Vec3<double> vector() const;  ///< a null entry reads as zero
-  [[nodiscard]] Mat3<double> matrix() const;
+  [[nodiscard]] double sigma() const;  ///< not negative; null, "not estimated", reads as zero
+
+  using Scalar = double (StrictYaml::*)() const;
+  [[nodiscard]] Vec3<double> vector(Scalar read = &StrictYaml::number) const;
+  [[nodiscard]] Mat3<double> matrix(Scalar read = &StrictYaml::number) const;
 
   [[nodiscard]] double number_or(const std::string& key, double otherwise) const {
     return has(key) ? at(key).number() : otherwise;

@@ -49,20 +49,9 @@ const std::vector<std::string>& logs() {
   return paths;
 }
 
-class ToCompressor final : public io::SampleSink {
- public:
-  explicit ToCompressor(calibration::Compressor& c) : compressor_(c) {}
-  void imu(std::int64_t t, const InertialSample<double>& s) override { compressor_.imu(t, s); }
-  void encoder(std::int64_t t, double a, double p) override { compressor_.encoder(t, a, p); }
-
- private:
-  calibration::Compressor& compressor_;
-};
-
 calibration::CompressedRecording compress(const std::string& path, io::Sha256* digest) {
   calibration::Compressor compressor({});
-  ToCompressor sink(compressor);
-  io::read_lcm_recording(path, {}, true, sink, digest);
+  io::read_lcm_recording(path, {}, true, compressor, digest);
   return compressor.finish();
 }
 

@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-#include "trunnion/core/error.hpp"
+#include "matchers/refuses.hpp"
 #include "trunnion/simulation/gaussian.hpp"
 
 namespace trunnion::calibration {
@@ -96,6 +96,7 @@ TEST(Compressor, SurvivesADamagedStamp) {
     const CompressedRecording r = compressor.finish();
     EXPECT_GE(r.figures.samples, 998) << damaged;
     EXPECT_GE(r.figures.stray, 1) << damaged;
+    EXPECT_NEAR(r.figures.duration, 2.5, 0.01) << damaged;
   }
 }
 
@@ -134,7 +135,7 @@ TEST(Compressor, RefusesAClockThatWasReset) {
 
 TEST(Compressor, RefusesASaturatedRecordingAndSaysWhere) {
   CompressOptions options = named();
-  options.gyro_range = 8.7;
+  options.range.gyro = 8.7;
   try {
     record(4000, options, [](int i, InertialSample<double>& s) {
       if (i >= 1000 && i < 1100) s.w.y() = 8.7;
@@ -146,6 +147,22 @@ TEST(Compressor, RefusesASaturatedRecordingAndSaysWhere) {
     EXPECT_THAT(e.what(), HasSubstr("saturated: 100 of 4000 samples"));
     EXPECT_THAT(e.what(), HasSubstr("first at 2.500000 s"));
   }
+}
+
+TEST(Compressor, RefusesTwoPublishersOnOneChannel) {
+  const InertialSample<double> s{Vec3<double>::Zero(), Vec3<double>(0, 0, 9.8)};
+  EXPECT_REFUSES(ExitCode::kInput, "do two units publish on one channel", {
+    Compressor compressor(named());
+    for (int i = 0; i < 4000; ++i) compressor.imu(kStart + 2500 * (i / 2) + i % 2, s);
+  });
+  EXPECT_REFUSES(ExitCode::kInput, "do two units publish on one channel", {
+    Compressor compressor(named());  // the other unit starts later
+    for (int i = 0; i < 4000; ++i) {
+      compressor.imu(kStart + 2500 * i, s);
+      if (i >= 2000) compressor.imu(kStart + 2500 * i + 1100, s);
+    }
+    static_cast<void>(compressor.finish());
+  });
 }
 
 TEST(Compressor, RefusesARecordingOfNothing) {

@@ -86,26 +86,6 @@ std::string mutate(std::string bytes, std::mt19937_64& rng) {
   return bytes;
 }
 
-class ToCompressor final : public io::SampleSink {
- public:
-  explicit ToCompressor(calibration::Compressor& c) : compressor_(c) {}
-  void imu(std::int64_t t, const InertialSample<double>& s) override { compressor_.imu(t, s); }
-  void encoder(std::int64_t t, double a, double p) override { compressor_.encoder(t, a, p); }
-
- private:
-  calibration::Compressor& compressor_;
-};
-
-class ToParts final : public io::SampleSink {
- public:
-  explicit ToParts(calibration::RestsAndTurns& parts) : parts_(parts) {}
-  void imu(std::int64_t t, const InertialSample<double>& s) override { parts_.imu(t, s); }
-  void encoder(std::int64_t, double, double) override {}
-
- private:
-  calibration::RestsAndTurns& parts_;
-};
-
 /// Feeds mutations of @p seed to @p read; every outcome but a clean read or an Error fails the test.
 void run(const char* kind, const std::string& seed, const std::string& path, const std::function<void()>& read) {
   std::mt19937_64 rng(20261122);
@@ -142,8 +122,7 @@ TEST(Mutations, OfLogs) {
     calibration::CompressOptions options;
     options.name = path;
     calibration::Compressor compressor(options);
-    ToCompressor sink(compressor);
-    io::read_lcm_recording(path, {}, true, sink);
+    io::read_lcm_recording(path, {}, true, compressor);
     static_cast<void>(compressor.finish());
   });
 }
@@ -156,17 +135,15 @@ TEST(Mutations, OfTables) {
     io::append_imu_csv(0.01 * i, {Vec3<double>(0.1, 0.2, 0.3), Vec3<double>(1, 2, 9.8)}, text);
   run("tables", text, path, [&] {
     calibration::Compressor compressor({});
-    ToCompressor sink(compressor);
     std::string digest;
-    io::read_imu_csv(path, {}, {}, sink, digest);
+    io::read_imu_csv(path, {}, {}, compressor, digest);
     static_cast<void>(compressor.finish());
   });
   run("tables by hand", text, path, [&] {
     calibration::RestsAndTurns parts(path);
-    ToParts sink(parts);
     std::string digest;
-    io::read_imu_csv(path, {}, {}, sink, digest);
-    static_cast<void>(parts.finish(0.0, 0.0));
+    io::read_imu_csv(path, {}, {}, parts, digest);
+    static_cast<void>(parts.finish({}));
   });
 }
 

@@ -76,6 +76,15 @@ TEST(CalibrationFile, RefusesWhatItCannotUse) {
                  read_calibration_file(changed("bias_rad_s", "bias")));
   EXPECT_REFUSES(ExitCode::kInput, "format: should be trunnion-calibration/1",
                  read_calibration_file(changed("calibration/1", "calibration/9")));
+  EXPECT_REFUSES(ExitCode::kInput, "verdict: should be within_limits or out_of_limits",
+                 read_calibration_file(changed("verdict: \"within_limits\"", "verdict: bananas")));
+  EXPECT_REFUSES(ExitCode::kInput, "gyroscope.bias_rad_s[0]: should be a number",
+                 read_calibration_file(changed("bias_rad_s: [", "bias_rad_s: [null, 0, 0] #")));
+  EXPECT_REFUSES(ExitCode::kInput, "sigma.gyroscope.bias_rad_s[1]: is a sigma, and negative", {
+    std::string text = to_yaml(example());
+    const std::size_t at = text.find("bias_rad_s: [", text.find("sigma:"));
+    read_calibration_file(folder.file("c.yaml", text.replace(at, 13, "bias_rad_s: [0, -1e-9, 0] # ")));
+  });
   EXPECT_REFUSES(ExitCode::kInput, "is no mount of the rig",
                  read_calibration_file(changed("\"mount\":\"mount_2\"", "\"mount\":\"mount_7\"")));
 }

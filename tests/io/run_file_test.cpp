@@ -78,6 +78,10 @@ TEST_F(RunFileTest, NamesAWrongTypeRangeOrUnit) {
   EXPECT_REFUSES(ExitCode::kInput, "recordings[0].mount: is missing",
                  read("format: trunnion-run/1\nsite: {latitude_deg: 1}\nrig: a\nrecordings: [{log: a}]\n"));
   EXPECT_REFUSES(ExitCode::kInput, "bias: stands twice", read(with("bias: shared\nbias: shared\n")));
+  EXPECT_REFUSES(ExitCode::kInput, "columns.t: stands twice",
+                 read(with("columns: {t: {column: 0, unit: s}, t: {column: 1, unit: s}}\n")));
+  EXPECT_REFUSES(ExitCode::kInput, "recordings[0].log.encoder: the run has no rig",
+                 read("format: trunnion-run/1\nsite: {latitude_deg: 1}\nrecordings: [{log: {imu: a, encoder: b}}]\n"));
   EXPECT_REFUSES(ExitCode::kInput, "not YAML", read("format: [\n"));
   EXPECT_REFUSES(ExitCode::kInput, "nested too deep", read("format: " + std::string(5000, '[') + "\n"));
 }

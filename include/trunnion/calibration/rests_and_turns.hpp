@@ -12,11 +12,13 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "trunnion/calibration/compress.hpp"
+#include "trunnion/calibration/channel.hpp"
 #include "trunnion/error_model/inertial_unit.hpp"
 #include "trunnion/error_model/noise.hpp"
+#include "trunnion/positions/sample_sink.hpp"
 
 namespace trunnion::calibration {
 
@@ -47,21 +49,27 @@ struct HandRecording {
 };
 
 /// Takes a recording apart in two steps: feed it, then finish().
-class RestsAndTurns {
+class RestsAndTurns final : public SampleSink {
  public:
   explicit RestsAndTurns(std::string name) { result_.name = std::move(name); }
 
   /// As Compressor::imu().
-  void imu(std::int64_t utime, const InertialSample<double>& sample);
+  void imu(std::int64_t utime, const InertialSample<double>& sample) override;
 
-  /// @param accel_range, gyro_range SI, 0: unknown. @throws Error (input) when no sample was fed or the unit saturated
-  HandRecording finish(double gyro_range, double accel_range);
+  /// There are none by hand: ignored.
+  void encoder(std::int64_t utime, double azimuth, double pitch) override;
+
+  /// A sample that stands alone against both its neighbours is an outlier: counted, and put between them.
+  /// @throws Error (input) when too few samples were fed, and as check_samples()
+  HandRecording finish(const SensorRange& range);
 
  private:
   struct Sample {
     double t;
     InertialSample<double> value;
   };
+  void mend_outliers();
+
   HandRecording result_;
   ChannelClock clock_;
   std::int64_t origin_ = 0;

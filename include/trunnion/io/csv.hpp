@@ -13,8 +13,8 @@
 #include <string>
 
 #include "trunnion/io/digest.hpp"
-#include "trunnion/io/sample_sink.hpp"
 #include "trunnion/io/sensor_sheet.hpp"
+#include "trunnion/positions/sample_sink.hpp"
 
 namespace trunnion::io {
 
@@ -28,8 +28,6 @@ struct ColumnChoice {
 /// Quantity (t, gyro_x ... accel_z, azimuth, pitch) to column.
 using ColumnMap = std::map<std::string, ColumnChoice>;
 
-/// The quantities a map may name.
-bool is_quantity(const std::string& name);
 /// Whether @p unit can measure @p quantity: for messages about a wrong unit, @p expected takes the list.
 bool unit_fits(const std::string& quantity, const std::string& unit, std::string& expected);
 

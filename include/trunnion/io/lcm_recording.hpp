@@ -14,7 +14,7 @@
 #include "trunnion/core/error.hpp"
 #include "trunnion/io/digest.hpp"
 #include "trunnion/io/lcm_log.hpp"
-#include "trunnion/io/sample_sink.hpp"
+#include "trunnion/positions/sample_sink.hpp"
 
 namespace trunnion::io {
 

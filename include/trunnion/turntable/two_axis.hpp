@@ -17,6 +17,8 @@
 
 #pragma once
 
+#include <array>
+
 #include "trunnion/core/earth.hpp"
 #include "trunnion/core/linear.hpp"
 #include "trunnion/core/rotation.hpp"
@@ -65,7 +67,7 @@ struct TwoAxisErrors {
   T tilt_y = T(0);            ///< rad, about north
   T heading = T(0);           ///< rad, of the root link's x axis, from east towards north
   T nonorthogonality = T(0);  ///< i [rad]
-  EncoderEccentricity<T> eccentricity[2];
+  std::array<EncoderEccentricity<T>, 2> eccentricity;
 };
 
 /// The rig at a site: turns joint motion into what a perfect unit in the pitch stage feels.

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the trunnion authors
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Where readers deliver samples, whatever the file was.
+/// Where samples go, whoever reads them: files, logs, a bus.
 
 #pragma once
 
@@ -9,7 +9,7 @@
 
 #include "trunnion/error_model/inertial_unit.hpp"
 
-namespace trunnion::io {
+namespace trunnion {
 
 class SampleSink {
  public:
@@ -25,4 +25,4 @@ class SampleSink {
   virtual void encoder(std::int64_t utime, double azimuth, double pitch) = 0;
 };
 
-}  // namespace trunnion::io
+}  // namespace trunnion
