@@ -4,7 +4,7 @@
 # Warnings of our own targets; not exported.
 add_library(trunnion_warnings INTERFACE)
 target_compile_options(trunnion_warnings INTERFACE
-  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wdouble-promotion $<$<BOOL:${TRUNNION_WERROR}>:-Werror>)
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wdouble-promotion $<$<BOOL:${TRUNNION_WERROR}>:-Werror>)
 
 # trunnion_component(<name> INTERFACE|STATIC HEADERS <h>... [SOURCES <cpp>...] [LINKS <target>...] [PRIVATE_LINKS <target>...])
 #

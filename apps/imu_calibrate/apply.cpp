@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the trunnion authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include <cmath>
-#include <filesystem>
+#include <algorithm>
 #include <memory>
 
 #include "command.hpp"
@@ -13,6 +12,7 @@
 #include "trunnion/io/csv.hpp"
 #include "trunnion/io/fault.hpp"
 #include "trunnion/io/lcm_recording.hpp"
+#include "trunnion/io/run_file.hpp"
 
 namespace trunnion::app {
 namespace {
@@ -44,16 +44,17 @@ class Corrected final : public SampleSink {
   long long samples_ = 0;
 };
 
-long long apply_to_log(const Options& o, const UnitCorrection<double>& correction) {
-  io::LcmLogReader log(o.input);
-  io::LcmLogWriter out(o.output);
+long long apply_to_log(const std::string& input, const std::string& channel, const std::string& output,
+                       const UnitCorrection<double>& correction) {
+  io::LcmLogReader log(input);
+  io::LcmLogWriter out(output);
   std::vector<InertialSample<double>> corrected;
   Corrected sink(correction, [&](std::int64_t, const InertialSample<double>& sample) { corrected.push_back(sample); });
-  io::LcmDecoder decoder(o.input, sink);
+  io::LcmDecoder decoder(input, sink);
   io::LcmEvent event;
   std::string message;
   while (log.next(event)) {
-    if (event.channel != o.channel) {
+    if (event.channel != channel) {
       out.write(event.timestamp, event.channel, event.data);
       continue;
     }
@@ -66,7 +67,7 @@ long long apply_to_log(const Options& o, const UnitCorrection<double>& correctio
   }
   decoder.finish();
   if (sink.samples() == 0) {
-    throw io::input_error(o.input, 0, "", "no usable message on the IMU channel '" + o.channel + "'");
+    throw io::input_error(input, 0, "", "no usable message on the IMU channel '" + channel + "'");
   }
   out.commit();
   const long long records = log.lost_records() + decoder.damaged().records;
@@ -77,7 +78,9 @@ long long apply_to_log(const Options& o, const UnitCorrection<double>& correctio
   return sink.samples();
 }
 
-long long apply_to_csv(const Options& o, const UnitCorrection<double>& correction) {
+/// Through the same reader as solve: columns and raw counts as the run file says.
+long long apply_to_table(const Options& o, const io::RunFile& run, const io::RecordingFiles& files,
+                         const UnitCorrection<double>& correction) {
   io::WholeFile out(o.output);
   out.write(io::imu_csv_header());
   std::string row;
@@ -86,8 +89,8 @@ long long apply_to_csv(const Options& o, const UnitCorrection<double>& correctio
     io::append_imu_csv(1e-6 * static_cast<double>(utime), sample, row);
     out.write(row);
   });
-  std::string digest;
-  io::read_imu_csv(o.input, {}, {}, sink, digest);
+  std::vector<std::pair<std::string, std::string>> digests;
+  io::read_recording(run, files, sink, digests);
   if (sink.samples() == 0) throw io::input_error(o.input, 0, "", "has no samples");
   out.commit();
   return sink.samples();
@@ -105,27 +108,49 @@ void apply(const Options& o) {
     unit.gyro.bias = bias.w;
     unit.accel.bias = bias.f;
   }
-  keep_inputs(o.output, {o.input, o.calibration});
+  io::RunFile run;
+  io::RecordingFiles files;
+  if (is_run_file(o.input)) {
+    run = io::read_run_file(o.input);
+    const int recordings = static_cast<int>(run.recordings.size());
+    if (o.recording > recordings || (o.recording == 0 && recordings > 1))
+      throw Error(ExitCode::kUsage,
+                  o.input + ": has " + std::to_string(recordings) + " recordings: choose one with --recording");
+    files = run.recordings[static_cast<std::size_t>(std::max(1, o.recording) - 1)];
+    files.encoder.clear();
+  } else {
+    (is_table(o.input) ? files.imu : files.lcm) = o.input;
+  }
+  const bool table = files.lcm.empty();
+  if (table != is_table(o.output))
+    throw Error(ExitCode::kUsage,
+                o.output + (table ? ": a corrected table is a .csv" : ": a corrected log is no table: name it .lcm"));
+  keep_inputs(o.output, {o.input, o.calibration, files.lcm, files.imu, files.gyro, files.accel});
   const UnitCorrection<double> correction(unit);
-  const bool csv = std::filesystem::path(o.input).extension() == ".csv";
-  const long long samples = csv ? apply_to_csv(o, correction) : apply_to_log(o, correction);
+  const long long samples =
+      table ? apply_to_table(o, run, files, correction)
+            : apply_to_log(files.lcm, is_run_file(o.input) ? run.channels.imu : o.channel, o.output, correction);
   std::printf("%s: %lld samples corrected\n", o.output.c_str(), samples);
 }
 
 }  // namespace
 
 void add_apply(CLI::App& app, ExitCode& exit_code) {
-  CLI::App* command = app.add_subcommand("apply", "Write a corrected log: LCM to LCM, CSV to CSV");
+  CLI::App* command = app.add_subcommand("apply", "Write a corrected log: LCM to LCM, tables to CSV");
   auto o = std::make_shared<Options>();
   command->add_option("calibration", o->calibration, "Calibration file")->required();
-  command->add_option("input", o->input, "LCM log, or CSV with the header t_s,gyro_x_rad_s,...,accel_z_m_s2")
+  command
+      ->add_option("input", o->input,
+                   "LCM log; CSV with the header t_s,gyro_x_rad_s,...,accel_z_m_s2; or the run file of a recording "
+                   "(columns, raw "
+                   "counts), with --recording")
       ->required();
   command->add_option("-o,--output", o->output, "Corrected file to write; other channels of a log are copied")
       ->required();
   command->add_option("--channel", o->channel, "IMU channel of the log")->capture_default_str();
   command
       ->add_option("--recording", o->recording,
-                   "Use the turn-on bias of this recording, from 1; default the mean over them")
+                   "Use the turn-on bias of this recording of the calibration, from 1; default the mean over them")
       ->check(CLI::Range(1, 1000));
   command->footer("Example:\n  imu_calibrate apply calibration.yaml flight.lcm -o corrected.lcm");
   command->callback([o, &exit_code] {

@@ -39,7 +39,7 @@ void add_demo(CLI::App& app, ExitCode& exit_code) {
   auto folder = std::make_shared<std::string>("trunnion-demo");
   auto seed = std::make_shared<std::string>("1");
   command->add_option("-o,--output", *folder, "Folder to write")->capture_default_str();
-  command->add_option("--seed", *seed, "Of the simulation")->capture_default_str()->check(CLI::NonNegativeNumber);
+  command->add_option("--seed", *seed, "Of the simulation")->capture_default_str()->check(CLI::Range(0, 2147483647));
   command->footer("Example:\n  imu_calibrate demo -o trunnion-demo");
   command->callback([folder, seed, &exit_code] { exit_code = demo(*folder, *seed); });
 }

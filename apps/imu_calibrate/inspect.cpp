@@ -4,17 +4,18 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "command.hpp"
+#include "recordings.hpp"
 #include "terminal.hpp"
 #include "trunnion/calibration/compress.hpp"
 #include "trunnion/calibration/rests_and_turns.hpp"
 #include "trunnion/core/error.hpp"
 #include "trunnion/core/units.hpp"
+#include "trunnion/io/fault.hpp"
 #include "trunnion/io/lcm_recording.hpp"
 #include "trunnion/io/run_file.hpp"
 
@@ -177,17 +178,14 @@ Json inspect_recording(const io::RunFile& run, const io::RecordingFiles& files) 
   if (!files.lcm.empty()) count_channels(files.lcm, json);
   InspectSink sink(files.name());
   std::vector<std::pair<std::string, std::string>> digests;
-  io::read_recording(run, files, sink, digests);
+  try {
+    io::read_recording(run, files, sink, digests);
+  } catch (const Error& e) {
+    if (!json.contains("channels")) throw;
+    json["refused"] = e.what();  // the channels are what is there to see
+  }
   json.update(sink.summary());
   return json;
-}
-
-/// Names in a log are anybody's: control bytes do not reach the terminal.
-std::string printable(std::string name) {
-  for (char& c : name) {
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
-  }
-  return name;
 }
 
 void print_channel(const char* name, const Json& c) {
@@ -214,7 +212,7 @@ void print_text(const Json& all) {
     if (one.contains("channels")) {
       std::printf("  channels:");
       for (const auto& [channel, messages] : one["channels"].items())
-        std::printf(" %s (%lld)", printable(channel).c_str(), messages.get<long long>());
+        std::printf(" %s (%lld)", io::printable(channel).c_str(), messages.get<long long>());
       std::printf("; lost %lld records, %lld bytes\n", one["lost"]["records"].get<long long>(),
                   one["lost"]["bytes"].get<long long>());
     }
@@ -234,15 +232,14 @@ void print_text(const Json& all) {
   }
 }
 
-void inspect(const Options& o) {
+ExitCode inspect(const Options& o) {
   io::RunFile run;
-  const std::string extension = std::filesystem::path(o.input).extension().string();
-  if (extension == ".yaml" || extension == ".yml") {
+  if (is_run_file(o.input)) {
     run = io::read_run_file(o.input);
   } else {
     run.channels = o.channels;
     io::RecordingFiles files;
-    (extension == ".csv" ? files.imu : files.lcm) = o.input;
+    (is_table(o.input) ? files.imu : files.lcm) = o.input;
     run.recordings.push_back(files);
   }
   ProgressLine progress;
@@ -256,6 +253,9 @@ void inspect(const Options& o) {
   } else {
     print_text(all);
   }
+  const bool refused = std::any_of(all["recordings"].begin(), all["recordings"].end(),
+                                   [](const Json& one) { return one.contains("refused") && !one.contains("imu"); });
+  return refused ? ExitCode::kInput : ExitCode::kDone;
 }
 
 }  // namespace
@@ -271,10 +271,7 @@ void add_inspect(CLI::App& app, ExitCode& exit_code) {
   command->add_option("--imu-channel", o->channels.imu, "Of a log")->capture_default_str();
   command->add_option("--encoder-channel", o->channels.encoder, "Of a log")->capture_default_str();
   command->footer("Example:\n  imu_calibrate inspect run.yaml");
-  command->callback([o, &exit_code] {
-    inspect(*o);
-    exit_code = ExitCode::kDone;
-  });
+  command->callback([o, &exit_code] { exit_code = inspect(*o); });
 }
 
 }  // namespace trunnion::app

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cctype>
 #include <exception>
 #include <filesystem>
 #include <mutex>
@@ -66,7 +67,23 @@ class ReadProgress {
   ProgressLine line_;
 };
 
+bool has_extension(const std::string& path, std::initializer_list<const char*> extensions) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
+}
+
+/// @throws Error (input) when two recordings are the same file by content
 void collect(RunInputs& inputs, std::vector<RunInputs>& each) {
+  for (std::size_t i = 0; i < each.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      if (each[i].digests.front().second == each[k].digests.front().second) {
+        throw Error(ExitCode::kInput,
+                    each[i].digests.front().first + ": is the same recording as " + each[k].digests.front().first);
+      }
+    }
+  }
   for (RunInputs& one : each) {
     inputs.losses.records += one.losses.records;
     inputs.losses.bytes += one.losses.bytes;
@@ -75,6 +92,9 @@ void collect(RunInputs& inputs, std::vector<RunInputs>& each) {
 }
 
 }  // namespace
+
+bool is_run_file(const std::string& path) { return has_extension(path, {".yaml", ".yml"}); }
+bool is_table(const std::string& path) { return has_extension(path, {".csv", ".txt", ".tsv", ".dat", ".mat"}); }
 
 void keep_inputs(const std::string& output, const std::vector<std::string>& inputs) {
   for (const std::string& input : inputs) {

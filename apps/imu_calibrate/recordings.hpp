@@ -21,6 +21,10 @@ struct RunInputs {
   io::LcmLosses losses;
 };
 
+/// What a file is, by its extension: a run file (.yaml, .yml), a table (.csv, .txt, .tsv, .dat, .mat), else an LCM log.
+bool is_run_file(const std::string& path);
+bool is_table(const std::string& path);
+
 /// Refuses (usage) an output that is one of the inputs: they are raw data.
 void keep_inputs(const std::string& output, const std::vector<std::string>& inputs);
 

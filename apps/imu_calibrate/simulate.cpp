@@ -111,7 +111,9 @@ void add_simulate(CLI::App& app, ExitCode& exit_code) {
       app.add_subcommand("simulate", "Record a simulated run: logs, run file, sheet, rig, and the truth");
   auto o = std::make_shared<Options>();
   command->add_option("-o,--output", o->output, "Folder to write, made if it is not there")->required();
-  command->add_option("--seed", o->seed, "Of every random number")->capture_default_str();
+  command->add_option("--seed", o->seed, "Of every random number")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 2147483647));
   command->add_option("--sheet", o->sheet, "Sensor sheet of the unit");
   command->add_option("--rig", o->rig, "URDF of the table");
   command->add_option("--latitude-deg", o->latitude_deg, "Of the bench")

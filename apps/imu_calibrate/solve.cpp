@@ -12,11 +12,14 @@
 #include "terminal.hpp"
 #include "trunnion/calibration/multi_position_solve.hpp"
 #include "trunnion/io/calibration_file.hpp"
+#include "trunnion/io/digest.hpp"
 #include "trunnion/io/urdf.hpp"
 #include "trunnion/io/whole_file.hpp"
 
 namespace trunnion::app {
 namespace {
+
+constexpr double kQuiet = 0.5;  // reduced chi-square
 
 struct Options {
   std::string run;
@@ -66,6 +69,10 @@ void print_text(const calibration::Solution& solution, const io::CalibrationFile
       "\nfit: %lld samples, %lld windows, %lld outliers, %lld records and %lld bytes lost, reduced chi-square %.4f, %d "
       "iterations\n",
       fit.samples, fit.windows, fit.outliers, fit.lost_records, fit.lost_bytes, fit.reduced_chi_square, fit.iterations);
+  if (fit.reduced_chi_square < kQuiet) {
+    std::printf("the data are quieter than the sheet says: every sigma is too large by some %s; leave its noise out\n",
+                figure(1.0 / std::sqrt(fit.reduced_chi_square), 2).c_str());
+  }
   std::printf("verdict: %s\n", file.within_limits ? "within limits" : "out of limits");
   for (const std::string& entry : file.out_of_limits) std::printf("  %s\n", entry.c_str());
 }
@@ -107,6 +114,9 @@ calibration::Solution solve_hand(const io::RunFile& run, RunInputs& inputs, int 
                hand.rests, hand.turns, figure(hand.rest_scatter, 3).c_str(),
                figure(hand.turn_scatter / kRadPerDeg, 3).c_str());
   held_out = hand.held_out;
+  if (hold_out > 0 && held_out.empty())
+    throw Error(ExitCode::kUsage, "--hold-out " + std::to_string(hold_out) + " leaves no turn out: there are " +
+                                      std::to_string(hand.turns));
   return std::move(hand.solution);
 }
 
@@ -127,8 +137,12 @@ ExitCode solve(const Options& o) {
   if (inputs.losses.bytes > 0) {
     std::fprintf(stderr, "%lld damaged records, %lld bytes passed over\n", inputs.losses.records, inputs.losses.bytes);
   }
-  if (!solution.observability.refused.empty())
-    throw Error(ExitCode::kNumerics, calibration::describe(solution.observability));
+  if (!solution.observability.refused.empty()) {
+    const std::string beyond = calibration::implausible(solution.parameters, solution.x);
+    throw Error(ExitCode::kNumerics,
+                calibration::describe(solution.observability) +
+                    (beyond.empty() ? "" : "and no unit has these: look at units, signs, mounts first\n" + beyond));
+  }
 
   file.model = run.sheet.model;
   file.serial = run.serial;
@@ -139,9 +153,12 @@ ExitCode solve(const Options& o) {
   file.tool = tool_name();
   file.run = std::filesystem::path(o.run).filename().string();
   const std::filesystem::path folder = std::filesystem::path(o.run).parent_path();
-  for (const auto& [path, digest] : inputs.digests) {
-    file.inputs.emplace_back(std::filesystem::path(path).lexically_proximate(folder.empty() ? "." : folder).string(),
-                             digest);
+  const auto near = [&](const std::string& path) {
+    return std::filesystem::path(path).lexically_proximate(folder.empty() ? "." : folder).string();
+  };
+  for (const auto& [path, digest] : inputs.digests) file.inputs.emplace_back(near(path), digest);
+  for (const std::string& path : {o.run, run.rig, run.sheet_path}) {
+    if (!path.empty()) file.inputs.emplace_back(near(path), io::sha256(io::read_whole(path)));
   }
   judge_limits(run, solution, file);
 

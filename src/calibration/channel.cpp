@@ -44,15 +44,19 @@ double sample_period(std::vector<double>& steps, const std::string& recording) {
   return median;
 }
 
-void check_samples(const RecordingFigures& figures, const std::string& recording) {
+void check_saturation(const RecordingFigures& figures, const std::string& recording) {
   const long long offered = figures.samples + figures.saturated + figures.outliers;
-  const auto count = static_cast<double>(offered);
-  if (static_cast<double>(figures.saturated) > kSaturatedFraction * count) {
+  if (static_cast<double>(figures.saturated) > kSaturatedFraction * static_cast<double>(offered)) {
     throw Error(ExitCode::kInput, recording + ": saturated: " + std::to_string(figures.saturated) + " of " +
                                       std::to_string(offered) + " samples at or past the sheet's range, first at " +
                                       std::to_string(figures.first_saturated) +
-                                      " s; turn slower, or correct the range in the sheet");
+                                      " s; turn slower, or correct the range or the nominal scale in the sheet");
   }
+}
+
+void check_crowding(const RecordingFigures& figures, const std::string& recording) {
+  const long long offered = figures.samples + figures.saturated + figures.outliers;
+  const auto count = static_cast<double>(offered);
   if (count * figures.period > kCrowded * (figures.duration + 2.0 * figures.period)) {
     throw Error(ExitCode::kInput, recording + ": " + std::to_string(offered) + " samples of " +
                                       std::to_string(1e3 * figures.period) + " ms do not fit into " +

@@ -228,7 +228,8 @@ CompressedRecording Compressor::finish() {
   }
   if (!t_.empty()) close_window();
   figures.duration = t_last_ - t_first_;
-  check_samples(figures, options_.name);
+  check_saturation(figures, options_.name);
+  check_crowding(figures, options_.name);
   result_.course.finish();
   return std::move(result_);
 }

@@ -228,9 +228,11 @@ class HandProblem {
     if (!options.has_noise) noise_ = pooled_noise();
     if (layout_.g_sensitivity >= 0) {
       for (int i = layout_.g_sensitivity; i < layout_.g_sensitivity + 9; ++i) {
-        // what a prior fixes is not refused
+        // what a prior fixes is not refused, unless a limit was asked for
+        const auto kind = static_cast<std::size_t>(Entry::kGyroGSensitivity);
+        if (options.refuse_above[kind] != default_refuse_above()[kind]) break;
         double& limit = layout_.parameters[static_cast<std::size_t>(i)].refuse_above;
-        limit = std::max(limit, options.g_sensitivity_sigma);
+        limit = std::max(limit, 1.01 * options.g_sensitivity_sigma);
       }
     }
     start();
@@ -520,6 +522,13 @@ class HandProblem {
     // along a direction that the data do not hold, the steps never end: the gate names it
     if (!converged_ && s.observability.refused.empty())
       throw Error(ExitCode::kNumerics, "the solve did not converge in " + std::to_string(iterations) + " iterations");
+    const std::string beyond = s.observability.refused.empty() ? implausible(s.parameters, s.x) : std::string();
+    if (!beyond.empty()) {
+      throw Error(ExitCode::kInput,
+                  "the solution is no small correction of the nominal scales; look at the units, the counts' scale and "
+                  "zero, the order and the signs of the axes:\n" +
+                      beyond);
+    }
     s.noise = noise_;
     s.gauge = {"accelerometer_z_along_case_z", "accelerometer_y_in_case_yz_plane"};
     CalibrationRecord& record = s.record;

@@ -4,6 +4,7 @@
 #include "trunnion/calibration/parameters.hpp"
 
 #include <cmath>
+#include <cstdio>
 
 #include "trunnion/core/units.hpp"
 
@@ -123,9 +124,10 @@ void Layout::visit(CalibrationValues& v, Visit&& visit) const {
     visit(tilt + 1, v.rig.tilt_y);
     visit(heading, v.rig.heading);
     visit(nonorthogonality, v.rig.nonorthogonality);
-    for (int a = 0; a < 2; ++a) {
-      visit(eccentricity + 2 * a, v.rig.eccentricity[a].cosine);
-      visit(eccentricity + 2 * a + 1, v.rig.eccentricity[a].sine);
+    int place = eccentricity;
+    for (auto& encoder : v.rig.eccentricity) {
+      visit(place++, encoder.cosine);
+      visit(place++, encoder.sine);
     }
   }
   for (std::size_t m = 0; m < mount_error.size(); ++m) {
@@ -169,6 +171,20 @@ CalibrationValues Layout::sigmas(const Eigen::MatrixXd& covariance) const {
     sigma.unit.accel.bias(i) = mean_sigma(accel_bias, i);
   }
   return sigma;
+}
+
+std::string implausible(const std::vector<Parameter>& parameters, const Eigen::VectorXd& x) {
+  std::string text;
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const Parameter& p = parameters[i];
+    if (p.unit != kind_of(p.kind).unit || p.name == "heading") continue;  // gravity has its prior, a heading any value
+    const double value = x(static_cast<Eigen::Index>(i)) * p.in_unit;
+    if (std::abs(value) <= kind_of(p.kind).largest) continue;
+    char line[160];
+    std::snprintf(line, sizeof line, "  %s: %.4g %s\n", p.name.c_str(), value, p.unit.c_str());
+    text += line;
+  }
+  return text;
 }
 
 }  // namespace trunnion::calibration

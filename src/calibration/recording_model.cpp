@@ -16,8 +16,9 @@ namespace {
 constexpr double kWindowMargin =
     0.25;                           // s of encoder course that a window needs on either side: room for the clock offset
 constexpr double kSlowRate = 0.02;  // rad/s: no lever arm adds anything
-constexpr double kRestLength = 10.0;  // s, of a rest
-constexpr double kRestRate = 2e-4;    // rad/s: a window slower than this is one node
+constexpr double kTurningRate = 0.05;  // rad/s
+constexpr double kRestLength = 10.0;   // s, of a rest
+constexpr double kRestRate = 2e-4;     // rad/s: a window slower than this is one node
 
 // What a window depends on through the rig: the places of the derivatives in a Jet and in a row.
 enum RigPlace : int {
@@ -94,9 +95,10 @@ Rigged<T> rigged(const Rig& rig, const Site& site, const CalibrationValues& valu
   errors.tilt_y = variable<T>(values.rig.tilt_y, kTilt + 1);
   errors.heading = variable<T>(values.rig.heading, kHeading);
   errors.nonorthogonality = variable<T>(values.rig.nonorthogonality, kNonorthogonality);
-  for (int a = 0; a < 2; ++a) {
-    errors.eccentricity[a].cosine = variable<T>(values.rig.eccentricity[a].cosine, kEccentricity + 2 * a);
-    errors.eccentricity[a].sine = variable<T>(values.rig.eccentricity[a].sine, kEccentricity + 2 * a + 1);
+  int place = kEccentricity;
+  for (std::size_t a = 0; a < errors.eccentricity.size(); ++a) {
+    errors.eccentricity[a].cosine = variable<T>(values.rig.eccentricity[a].cosine, place++);
+    errors.eccentricity[a].sine = variable<T>(values.rig.eccentricity[a].sine, place++);
   }
   Vec3<T> lever;
   for (int i = 0; i < 3; ++i) lever(i) = variable<T>(values.lever_arm[mount](i), kLever + i);
@@ -166,6 +168,19 @@ double RecordingModel::force_at_rest() const {
   if (force.empty()) return site_.gravity;
   const auto middle = force.begin() + static_cast<std::ptrdiff_t>(force.size() / 2);
   std::nth_element(force.begin(), middle, force.end());
+  return *middle;
+}
+
+double RecordingModel::rate_ratio() const {
+  std::vector<double> ratio;
+  for (std::size_t k = 0; k < usable_.size(); ++k) {
+    const auto reading = recording_.data.course.at(window(k).t);
+    const double rate = std::hypot(reading[0].rate, reading[1].rate);
+    if (rate > kTurningRate) ratio.push_back(window(k).mean.w.norm() / rate);
+  }
+  if (ratio.empty()) return 1.0;
+  const auto middle = ratio.begin() + static_cast<std::ptrdiff_t>(ratio.size() / 2);
+  std::nth_element(ratio.begin(), middle, ratio.end());
   return *middle;
 }
 

@@ -49,6 +49,9 @@ class RecordingModel {
   /// Median specific force of the slow windows [m/s^2]; gravity where there are none.
   [[nodiscard]] double force_at_rest() const;
 
+  /// Median of the gyros' rate against the encoders' over the turning windows; 1 where there are none.
+  [[nodiscard]] double rate_ratio() const;
+
   /// Adds |step| between neighbouring windows at rest, scaled to a noise density.
   void rest_noise(std::vector<double>& gyro, std::vector<double>& accel) const;
 

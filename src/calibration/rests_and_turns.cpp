@@ -83,12 +83,9 @@ HandRecording RestsAndTurns::finish(const SensorRange& range) {
   for (std::size_t i = 1; i < n; ++i) step[i - 1] = samples_[i].t - samples_[i - 1].t;
   figures.period = sample_period(step, result_.name);
   figures.duration = samples_.back().t;
-  for (const Sample& s : samples_) {
-    if (range.saturated(s.value) && ++figures.saturated == 1) figures.first_saturated = s.t;
-  }
   mend_outliers();
-  figures.samples = static_cast<long long>(n) - figures.saturated - figures.outliers;
-  check_samples(figures, result_.name);
+  figures.samples = static_cast<long long>(n) - figures.outliers;
+  check_crowding(figures, result_.name);
 
   std::vector<Block> blocks;
   const auto length = static_cast<std::size_t>(std::max(4.0, std::round(kBlock / figures.period)));
@@ -192,6 +189,12 @@ HandRecording RestsAndTurns::finish(const SensorRange& range) {
     }
     if (!broken && !turn.steps.empty()) result_.turns.push_back(std::move(turn));
   }
+  // what lies before the first rest and after the last is not used: there it may be dropped on the floor
+  for (std::size_t i = rest_first.empty() ? n : rest_first.front(); i < n && i < rest_last.back(); ++i) {
+    if (range.saturated(samples_[i].value) && ++figures.saturated == 1) figures.first_saturated = samples_[i].t;
+  }
+  figures.samples -= figures.saturated;
+  check_saturation(figures, result_.name);
   samples_ = {};
   return std::move(result_);
 }

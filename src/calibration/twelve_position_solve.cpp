@@ -121,6 +121,14 @@ class TableProblem {
                                           span(recordings[r]) + ")");
       }
     }
+    for (const auto& model : models_) {
+      const double ratio = model->rate_ratio();
+      if (ratio < 0.7 || ratio > 1.4) {
+        throw Error(ExitCode::kInput, recordings[model->index()].data.name + ": the gyros turn " +
+                                          std::to_string(ratio) +
+                                          " times as fast as the encoders: wrong unit or nominal scale of one of them");
+      }
+    }
     prior_ = {layout_.gravity, site.gravity, site.gravity_sigma};
   }
 
@@ -309,7 +317,7 @@ class TableProblem {
         const double size = std::abs(innovation) * std::sqrt(static_cast<double>(inflation));
         const float before = inflation;
         inflation = size > kHuber ? static_cast<float>(size / kHuber * (size / kHuber)) : 1.0F;
-        changed += std::abs(inflation - before) > 0.1F * inflation ? 1 : 0;
+        changed += std::abs(inflation - before) > 0.1F * inflation ? 1U : 0U;
         ++rows;
       });
       model->inflation() = std::move(next);
@@ -344,7 +352,8 @@ class TableProblem {
           ExitCode::kNumerics,
           "the data do not fit the model: reduced chi-square " + std::to_string(worst.chi_square) + " in " +
               worst.name +
-              ". The unit is noisier than its sheet (leave the sheet out), its clock drifts, or the encoders fail");
+              ". Look at the mount of each recording, the signs and units of the encoders and a stated clock offset; "
+              "then: the unit is noisier than its sheet (leave the sheet out), its clock drifts, or the encoders fail");
     }
     if (chi_square > 1.0) observability.covariance *= chi_square;
   }
@@ -373,7 +382,17 @@ class TableProblem {
     solution.parameters = layout_.parameters;
     layout_.write(start_, solution.x);
     solution.observability = judge(information, layout_.parameters);
-    if (solution.observability.refused.empty()) hold_against_the_data(solution.observability, worst, cost / freedom);
+    if (solution.observability.refused.empty()) {
+      const std::string beyond = implausible(solution.parameters, solution.x);
+      if (!beyond.empty()) {
+        throw Error(
+            ExitCode::kInput,
+            "the solution is no small correction of what the files say; look at the rig's drawing (radians), the "
+            "mount of each recording, the zeros, signs and units of the encoders:\n" +
+                beyond);
+      }
+      hold_against_the_data(solution.observability, worst, cost / freedom);
+    }
     solution.noise = noise;
     solution.gauge = {"pitch_encoder_zero", request().mounts.front() + "_datum"};
     CalibrationRecord& record = solution.record;

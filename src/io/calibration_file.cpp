@@ -203,10 +203,9 @@ std::string to_json(const CalibrationFile& file) {
 }
 
 CalibrationFile read_calibration_file(const std::string& path) {
-  const StrictYaml root = StrictYaml::load(path);
+  const StrictYaml root = StrictYaml::load(path, "trunnion-calibration/1");
   root.only({"format", "imu", "gyroscope", "accelerometer", "sigma", "rig", "geometry", "recordings", "gauge", "fit",
              "verdict", "out_of_limits", "provenance"});
-  if (root.at("format").text() != "trunnion-calibration/1") root.at("format").fail("should be trunnion-calibration/1");
   CalibrationFile file;
   if (root.has("imu")) {
     root.at("imu").only({"model", "serial"});

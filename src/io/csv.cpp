@@ -160,6 +160,7 @@ class Table {
   }
 
   [[nodiscard]] long long line() const { return line_; }
+  [[nodiscard]] bool has_header() const { return !names_.empty(); }
   [[nodiscard]] const std::string& path() const { return path_; }
 
  private:
@@ -287,12 +288,15 @@ void read_split_csv(const std::string& gyro_path, const std::string& accel_path,
   Table gyro(gyro_path, gyro_digest);
   Table accel(accel_path, accel_digest);
   ColumnMap map = columns;
-  const auto by_default = [&](const std::string& quantity, int index, const char* unit) {
-    if (map.count(quantity) == 0) map[quantity] = {"", index, unit};
+  // without a header: time in seconds, then counts of x, y, z
+  const auto by_default = [&](const Table& table, const std::string& quantity, int index, const char* unit) {
+    if (!table.has_header() && map.count(quantity) == 0) map[quantity] = {"", index, unit};
   };
-  by_default("t", 0, "s");
+  if (gyro.has_header() != accel.has_header())
+    throw input_error(gyro.has_header() ? accel_path : gyro_path, 1, "", "has no header, while the other file has one");
+  by_default(gyro, "t", 0, "s");
   int column = 0;
-  for (const char* sensor : kSensors) by_default(sensor, 1 + column++ % 3, kCounts);
+  for (const char* sensor : kSensors) by_default(gyro, sensor, 1 + column++ % 3, kCounts);
   gyro.choose({"t", kSensors[0], kSensors[1], kSensors[2]}, map, sheet);
   accel.choose({"t", kSensors[3], kSensors[4], kSensors[5]}, map, sheet);
   std::array<double, 4> g{};

@@ -17,4 +17,11 @@ Error input_error_at_byte(const std::string& file, long long byte, const std::st
           file + ": byte " + std::to_string(byte) + (field.empty() ? "" : ": " + field) + ": " + what};
 }
 
+std::string printable(std::string name) {
+  for (char& c : name) {
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+  }
+  return name;
+}
+
 }  // namespace trunnion::io

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <set>
 
 #include "big_endian.hpp"
 #include "trunnion/io/fault.hpp"
@@ -19,9 +20,10 @@ constexpr std::size_t kEncoderHead = 8 + 8 + 8 + 4;
 constexpr std::size_t kBatchHead = 8 + 8 + 8 + 4;
 constexpr std::size_t kBatchSample = 7 * 8;
 constexpr long long kEventsPerProgress = 100000;
-constexpr double kTolerableDamage = 1e-3;  // messages that cannot be decoded, against those that can
-constexpr double kLargestReading = 1e6;    // rad/s, m/s^2
-constexpr double kLargestAngle = 1e7;      // rad
+constexpr std::size_t kNamedChannels = 20;  // in a message
+constexpr double kTolerableDamage = 1e-3;   // messages that cannot be decoded, against those that can
+constexpr double kLargestReading = 1e6;     // rad/s, m/s^2
+constexpr double kLargestAngle = 1e7;       // rad
 
 std::string hexadecimal(std::uint64_t v) {
   char text[24];
@@ -130,23 +132,30 @@ LcmLosses read_lcm_recording(const std::string& path, const LcmChannels& channel
   LcmDecoder decoder(path, sink);
   LcmEvent event;
   long long events = 0;
+  std::set<std::string, std::less<>> others;
   while (log.next(event)) {
     if (event.channel == channels.imu) {
       decoder.imu(event);
     } else if (event.channel == channels.encoder) {
       decoder.encoder(event);
+    } else if (others.size() < kNamedChannels && others.find(event.channel) == others.end()) {
+      others.emplace(event.channel);
     }
     if (progress && ++events % kEventsPerProgress == 0)
       progress(static_cast<double>(event.byte) / static_cast<double>(log.size()));
   }
   decoder.finish();
+  std::string others_named;
+  for (const std::string& name : others)
+    others_named += (others_named.empty() ? "; other channels: " : ", ") + printable(name);
   if (decoder.samples() == 0) {
     throw input_error(path, 0, "",
-                      "no usable message on the IMU channel '" + channels.imu + "'" +
+                      "no usable message on the IMU channel '" + channels.imu + "'" + others_named +
                           (log.lost_bytes() > 0 ? "; " + std::to_string(log.lost_bytes()) + " bytes are damaged" : ""));
   }
   if (need_encoder && decoder.encoders() == 0) {
-    throw input_error(path, 0, "", "no usable message on the encoder channel '" + channels.encoder + "'");
+    throw input_error(path, 0, "",
+                      "no usable message on the encoder channel '" + channels.encoder + "'" + others_named);
   }
   return {log.lost_records() + decoder.damaged().records, log.lost_bytes() + decoder.damaged().bytes};
 }

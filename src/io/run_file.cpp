@@ -19,7 +19,7 @@ std::string beside(const std::string& file, const std::string& path) {
   return p.is_absolute() ? path : (std::filesystem::path(file).parent_path() / p).lexically_normal().string();
 }
 
-constexpr const char* kNoRig = "the run has no rig: name its URDF under rig, or leave the encoder out";
+constexpr const char* kNoRig = "the run has no rig: name its URDF under rig, or leave mount and encoder out";
 
 std::size_t entry_index(const StrictYaml& map, const std::string& key) {
   std::vector<std::string> known;
@@ -55,6 +55,7 @@ ColumnMap read_columns(const StrictYaml& node) {
 }
 
 RecordingFiles read_files(const StrictYaml& node, const std::string& run, bool has_rig) {
+  if (!has_rig && node.has("mount")) node.at("mount").fail(kNoRig);
   node.only(has_rig ? std::vector<std::string>{"mount", "log"} : std::vector<std::string>{"log"});
   RecordingFiles files;
   if (has_rig) files.mount = node.at("mount").text();
@@ -79,10 +80,9 @@ RecordingFiles read_files(const StrictYaml& node, const std::string& run, bool h
 }  // namespace
 
 RunFile read_run_file(const std::string& path) {
-  const StrictYaml root = StrictYaml::load(path);
+  const StrictYaml root = StrictYaml::load(path, "trunnion-run/1");
   root.only({"format", "site", "rig", "axes", "sheet", "serial", "clock", "bias", "model", "refuse_above", "recordings",
              "limits", "channels", "columns"});
-  if (root.at("format").text() != "trunnion-run/1") root.at("format").fail("should be trunnion-run/1");
   RunFile run;
   run.path = path;
 
@@ -116,6 +116,7 @@ RunFile read_run_file(const std::string& path) {
     if (bias != "per_recording" && bias != "shared") root.at("bias").fail("should be per_recording or shared");
     run.bias_per_recording = bias == "per_recording";
   }
+  run.cubic = !run.rig.empty();  // hand turns are too few and too short to tell a cubic from a scale
   if (root.has("model")) {
     run.cubic = run.g_sensitivity = run.quadratic = false;
     const StrictYaml model = root.at("model");

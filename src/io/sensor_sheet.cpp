@@ -30,9 +30,8 @@ bool read_triad(const StrictYaml& node, const std::string& range_key, double ran
 }  // namespace
 
 SensorSheet read_sensor_sheet(const std::string& path) {
-  const StrictYaml root = StrictYaml::load(path);
+  const StrictYaml root = StrictYaml::load(path, "trunnion-sheet/1");
   root.only({"format", "model", "rate_hz", "gyroscope", "accelerometer"});
-  if (root.at("format").text() != "trunnion-sheet/1") root.at("format").fail("should be trunnion-sheet/1");
   SensorSheet sheet;
   sheet.model = root.at("model").text();
   if (root.has("rate_hz")) sheet.rate_hz = root.at("rate_hz").number_in(10.0, 1e5);

@@ -71,13 +71,16 @@ std::string nearest(const std::string& word, const std::vector<std::string>& kno
   return best;
 }
 
-StrictYaml StrictYaml::load(const std::string& file) {
+StrictYaml StrictYaml::load(const std::string& file, const std::string& format) {
   const std::string text = read_whole(file, kLargestYaml);
   if (too_deep(text)) throw input_error(file, 0, "", "is nested too deep");
   try {
     YAML::Node node = YAML::Load(text);
     if (!node.IsMap()) throw input_error(file, 1, "", "is not a YAML map of keys");
-    return {file, "", node};
+    StrictYaml root(file, "", node);
+    const std::string found = root.at("format").text();
+    if (found != format) root.at("format").fail("should be " + format + ", is " + found);
+    return root;
   } catch (const YAML::Exception& e) {
     throw input_error(file, e.mark.line + 1, "", "not YAML: " + e.msg);
   }

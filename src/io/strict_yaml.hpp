@@ -17,8 +17,8 @@ namespace trunnion::io {
 
 class StrictYaml {
  public:
-  /// Parses a file. @throws Error (input)
-  static StrictYaml load(const std::string& file);
+  /// Parses a file whose key format is @p format. @throws Error (input)
+  static StrictYaml load(const std::string& file, const std::string& format);
 
   /// The map must have no other keys than these.
   void only(const std::vector<std::string>& known) const;

@@ -103,6 +103,18 @@ TEST_F(Csv, TwoFilesMustAgreeInTheirStamps) {
                  read_split_csv(gyro, folder_.file("c.txt", "0.00 1 2 3\n"), {}, {}, collect_, digest_, other));
 }
 
+TEST_F(Csv, AHeaderOfTwoFilesIsHeeded) {
+  const std::string gyro = folder_.file("g.csv", "t_s,gyro_y_rad_s,gyro_z_rad_s,gyro_x_deg_s\n0.00,2,3,180\n");
+  const std::string accel = folder_.file("a.csv", "t_s,accel_z_m_s2,accel_y_m_s2,accel_x_m_s2\n0.00,3,2,1\n");
+  std::string other;
+  read_split_csv(gyro, accel, {}, {}, collect_, digest_, other);
+  EXPECT_NEAR(collect_.samples.at(0).w.x(), kPi, 1e-12);
+  EXPECT_EQ(collect_.samples[0].w.tail<2>(), Eigen::Vector2d(2, 3));
+  EXPECT_EQ(collect_.samples[0].f, Vec3<double>(1, 2, 3));
+  EXPECT_REFUSES(ExitCode::kInput, "b.txt:1: has no header, while the other file has one",
+                 read_split_csv(gyro, folder_.file("b.txt", "0.00 1 2 3\n"), {}, {}, collect_, digest_, other));
+}
+
 TEST_F(Csv, ReadsEncoders) {
   read_encoder_csv(folder_.file("e.csv", "t_s,azimuth_deg,pitch_rad\n1,180,0.5\n"), {}, collect_, digest_);
   ASSERT_EQ(collect_.angles.size(), 1U);

@@ -99,8 +99,10 @@ ChannelClock::Verdict judge_and_count(ChannelClock& clock, std::int64_t utime, c
 /// @throws Error (input) when their mean, without the longest hundredth, is another: stamps that come in bunches
 double sample_period(std::vector<double>& steps, const std::string& recording);
 
-/// @throws Error (input) when more than one sample in a thousand was saturated, or when two publishers share the
-/// channel: more samples than periods
-void check_samples(const RecordingFigures& figures, const std::string& recording);
+/// @throws Error (input) when more than one sample in a thousand was saturated
+void check_saturation(const RecordingFigures& figures, const std::string& recording);
+
+/// @throws Error (input) when there are more samples than periods: another publisher came in later
+void check_crowding(const RecordingFigures& figures, const std::string& recording);
 
 }  // namespace trunnion::calibration

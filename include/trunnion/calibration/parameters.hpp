@@ -72,4 +72,7 @@ struct Layout {
   void visit(CalibrationValues& values, Visit&& visit) const;
 };
 
+/// The entries whose value no instrument and no rig has (EntryKind::largest), a line each; empty where there are none.
+std::string implausible(const std::vector<Parameter>& parameters, const Eigen::VectorXd& x);
+
 }  // namespace trunnion::calibration

@@ -60,7 +60,7 @@ class RestsAndTurns final : public SampleSink {
   void encoder(std::int64_t utime, double azimuth, double pitch) override;
 
   /// A sample that stands alone against both its neighbours is an outlier: counted, and put between them.
-  /// @throws Error (input) when too few samples were fed, and as check_samples()
+  /// @throws Error (input) when too few samples were fed or the unit saturated between the first rest and the last
   HandRecording finish(const SensorRange& range);
 
  private:

@@ -17,4 +17,7 @@ Error input_error(const std::string& file, long long line, const std::string& fi
 /// The same for binary files, at a byte offset.
 Error input_error_at_byte(const std::string& file, long long byte, const std::string& field, const std::string& what);
 
+/// A name from a file as it may reach a terminal: control bytes become '?'.
+std::string printable(std::string name);
+
 }  // namespace trunnion::io

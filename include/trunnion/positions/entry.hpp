@@ -35,21 +35,22 @@ struct EntryKind {
   const char* unit;
   double si;            ///< one unit in SI
   double refuse_above;  ///< in the unit
+  double largest;       ///< in the unit; beyond it is no error of an instrument but a mistake in the files
 };
 
 inline constexpr std::array<EntryKind, kEntries> kEntryKinds = {{
-    {"gyro_bias_deg_per_h", "deg/h", kRadPerSPerDegPerH, 180.0},
-    {"gyro_scale_ppm", "ppm", 1e-6, 500.0},
-    {"gyro_cross_coupling_deg", "deg", kRadPerDeg, 0.1},
-    {"gyro_cubic_ppm", "ppm at the largest rate", 1e-6, 500.0},
-    {"gyro_g_sensitivity_deg_per_h_per_g", "deg/h/g", kRadPerSPerDegPerH / kStandardGravity, 36.0},
-    {"accel_bias_ug", "ug", kMetresPerS2PerMicroG, 2500.0},
-    {"accel_scale_ppm", "ppm", 1e-6, 500.0},
-    {"accel_cross_coupling_deg", "deg", kRadPerDeg, 0.1},
-    {"accel_quadratic_ppm", "ppm at 1 g", 1e-6 / kStandardGravity, 500.0},
-    {"rig_angle_deg", "deg", kRadPerDeg, 0.1},
-    {"lever_arm_m", "m", 1.0, 0.1},
-    {"clock_offset_ms", "ms", 1e-3, 5.0},
+    {"gyro_bias_deg_per_h", "deg/h", kRadPerSPerDegPerH, 180.0, 2e5},
+    {"gyro_scale_ppm", "ppm", 1e-6, 500.0, 2e5},
+    {"gyro_cross_coupling_deg", "deg", kRadPerDeg, 0.1, 10.0},
+    {"gyro_cubic_ppm", "ppm at the largest rate", 1e-6, 500.0, 2e5},
+    {"gyro_g_sensitivity_deg_per_h_per_g", "deg/h/g", kRadPerSPerDegPerH / kStandardGravity, 36.0, 2e4},
+    {"accel_bias_ug", "ug", kMetresPerS2PerMicroG, 2500.0, 5e5},
+    {"accel_scale_ppm", "ppm", 1e-6, 500.0, 2e5},
+    {"accel_cross_coupling_deg", "deg", kRadPerDeg, 0.1, 10.0},
+    {"accel_quadratic_ppm", "ppm at 1 g", 1e-6 / kStandardGravity, 500.0, 2e5},
+    {"rig_angle_deg", "deg", kRadPerDeg, 0.1, 10.0},
+    {"lever_arm_m", "m", 1.0, 0.1, 3.0},
+    {"clock_offset_ms", "ms", 1e-3, 5.0, 1e3},
 }};
 
 constexpr const EntryKind& kind_of(Entry entry) { return kEntryKinds[static_cast<std::size_t>(entry)]; }
