@@ -5,6 +5,7 @@
 
 #pragma once
 
+#include "trunnion/simulation/analytic_path.hpp"
 #include "trunnion/simulation/axis_motion.hpp"
 #include "trunnion/simulation/gaussian.hpp"
 #include "trunnion/simulation/table_run.hpp"

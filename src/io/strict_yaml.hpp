@@ -52,8 +52,8 @@ class StrictYaml {
   [[noreturn]] void fail(const std::string& what) const;
 
  private:
-  StrictYaml(std::string file, std::string field, YAML::Node node)
-      : file_(std::move(file)), field_(std::move(field)), node_(std::move(node)) {}
+  StrictYaml(std::string file, std::string field, const YAML::Node& node)
+      : file_(std::move(file)), field_(std::move(field)), node_(node) {}
   std::string file_;
   std::string field_;
   YAML::Node node_;

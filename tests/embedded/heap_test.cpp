@@ -47,6 +47,13 @@ int main() {
     sum.w += output.w;
     sum.f += output.f;
   }
+  Navigator<PreviousSample<float>> navigator(NavigationState<float>{}, 0.01F);
+  Navigator<ExactSamples<float, 6>> exact(NavigationState<float>{}, 0.01F);
+  for (int i = 0; i < 600; ++i) {
+    const Increment<float> increment{Vec3<float>(1e-3F, 0.0F, 0.0F), Vec3<float>(0.0F, 0.0F, -0.098F)};
+    if (navigator.add(increment) != Status::kOk || exact.add(increment) != Status::kOk) return 3;
+  }
+  sum.f += navigator.state().velocity + exact.state().velocity;
   const TriadGeometry<float> parts = unit.gyro.geometry();
   const long used = g_allocations - before;
   std::printf("%ld allocations, sum %g\n", used, static_cast<double>(sum.w.sum() + sum.f.sum() + parts.scale.sum()));
