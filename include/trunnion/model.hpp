@@ -5,6 +5,8 @@
 
 #pragma once
 
+#include "trunnion/alignment/coarse.hpp"
+#include "trunnion/alignment/gyrocompass.hpp"
 #include "trunnion/core.hpp"
 #include "trunnion/error_model/inertial_unit.hpp"
 #include "trunnion/error_model/noise.hpp"
