@@ -17,6 +17,7 @@
 #include "trunnion/positions/sample_sink.hpp"
 #include "trunnion/positions/twelve.hpp"
 #include "trunnion/strapdown/body_motion.hpp"
+#include "trunnion/strapdown/error_dynamics.hpp"
 #include "trunnion/strapdown/increment.hpp"
 #include "trunnion/strapdown/navigator.hpp"
 #include "trunnion/turntable/encoder.hpp"
