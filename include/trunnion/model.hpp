@@ -11,6 +11,7 @@
 #include "trunnion/error_model/inertial_unit.hpp"
 #include "trunnion/error_model/noise.hpp"
 #include "trunnion/error_model/triad.hpp"
+#include "trunnion/modulation/revolution_average.hpp"
 #include "trunnion/positions/calibration_record.hpp"
 #include "trunnion/positions/entry.hpp"
 #include "trunnion/positions/observation.hpp"

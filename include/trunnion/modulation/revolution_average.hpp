@@ -1,0 +1,139 @@
+// SPDX-FileCopyrightText: 2026 the trunnion authors
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Rotation modulation with an index pulse a turn and no angle sensor: whole-turn means, in floating point or exactly
+/// in integers.
+///
+/// A unit S turns about an axis fixed in the body. What is constant in the body averages to zero across the axis over a
+/// whole turn; what is constant in the unit, its bias, stays:
+///
+///   b_xy = (1/T) integral of the output over a turn,   W = +-2 pi / T,   w_body,axial = mean w_z - W       ... (1)
+///
+/// The pulse falls within a sample: of that sample the fraction before the pulse belongs to the turn that ends, the
+/// rest to the one that begins,
+///
+///   sum = (1 - r_0) s_0 + s_1 + ... + s_(n-1) + r_n s_n                                                    ... (2)
+///
+/// so that the scatter of (1) is that of white noise over T, not that of the sampling (docs/theory/modulation.md).
+/// The axial sum tells how many turns lie between two pulses: a bouncing pulse is passed over, a missed one noticed,
+/// and the mean over two or three turns is as good as over one. In integers, r counts in 65536ths and sums are exact.
+
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <type_traits>
+
+namespace trunnion {
+
+/// How sums over samples of type C are kept: sample * kOne is one sample.
+template <class C, bool = std::is_integral_v<C>>
+struct RevolutionSum {
+  using Type = C;
+  static constexpr Type kOne = C(1);
+};
+template <class C>
+struct RevolutionSum<C, true> {
+  static_assert(sizeof(C) <= 4, "sums of 32-bit counts are exact for 32767 full-scale samples a turn");
+  using Type = std::int64_t;
+  static constexpr Type kOne = 65536;
+};
+
+/// The outputs of a unit, x y z of the gyros and x y z of the accelerometers.
+template <class C>
+using UnitOutput = std::array<C, 6>;
+
+template <class C>
+struct Revolution {
+  using Sum = typename RevolutionSum<C>::Type;
+  std::array<Sum, 6> sum{};  ///< eq. (2), in outputs times kOne
+  Sum samples{};             ///< in kOne: T is samples / kOne sample periods
+  int turns = 0;             ///< between the two pulses: more than one where pulses were missed
+  int bounces = 0;           ///< pulses passed over within it
+  bool saturated = false;    ///< the axial gyro was at its range: turns is not to be believed
+
+  /// Mean of an output over the turn, eq. (1); integers round to the nearest count.
+  [[nodiscard]] C mean(std::size_t output) const {
+    const Sum s = sum[output];
+    if constexpr (std::is_integral_v<C>) {
+      const Sum half = samples / 2;
+      return static_cast<C>((s >= 0 ? s + half : s - half) / samples);
+    } else {
+      return s / samples;
+    }
+  }
+};
+
+template <class C>
+class RevolutionAverage {
+ public:
+  using Sum = typename RevolutionSum<C>::Type;
+  static constexpr Sum kOne = RevolutionSum<C>::kOne;
+
+  /// @param axial output along the axis, 0, 1 or 2 (gyro x, y, z)
+  /// @param full_turn what the axial output of one turn sums to: 2 pi / (scale * sample period), in outputs; positive
+  /// @param axial_range output at which the axial gyro saturates; 0: unknown
+  RevolutionAverage(std::size_t axial, Sum full_turn, C axial_range)
+      : axial_(axial), full_turn_(full_turn), axial_range_(axial_range) {}
+
+  /// A sample without a pulse.
+  void add(const UnitOutput<C>& sample) {
+    accumulate(sample, kOne);
+    look_at_range(sample);
+  }
+
+  /// A sample with a pulse in it. @param before fraction of the sample that lies before the pulse, in [0, kOne]
+  /// @return whether a turn is complete: turn()
+  bool add_with_pulse(const UnitOutput<C>& sample, Sum before) {
+    look_at_range(sample);
+    const Sum angle = open_.sum[axial_] + static_cast<Sum>(sample[axial_]) * before;
+    const Sum size = angle < Sum(0) ? -angle : angle;
+    const Sum turn_size = full_turn_ * kOne;
+    if (started_ && !open_.saturated && size < turn_size / Sum(2)) {
+      accumulate(sample, kOne);
+      ++open_.bounces;
+      return false;
+    }
+    accumulate(sample, before);
+    const bool complete = started_;
+    if (complete) {
+      closed_ = open_;
+      closed_.turns = static_cast<int>((size + turn_size / Sum(2)) / turn_size);
+    }
+    const bool still_saturated = is_saturated(sample);
+    open_ = Revolution<C>{};
+    open_.saturated = still_saturated;
+    started_ = true;
+    accumulate(sample, kOne - before);
+    return complete;
+  }
+
+  /// The last complete turn.
+  [[nodiscard]] const Revolution<C>& turn() const { return closed_; }
+
+  /// Turns since the last pulse, by the axial gyro: two or more, and the pulse is missing.
+  [[nodiscard]] int turns_without_pulse() const {
+    const Sum angle = open_.sum[axial_];
+    return static_cast<int>((angle < Sum(0) ? -angle : angle) / (full_turn_ * kOne));
+  }
+
+ private:
+  void accumulate(const UnitOutput<C>& sample, Sum share) {
+    for (std::size_t i = 0; i < sample.size(); ++i) open_.sum[i] += static_cast<Sum>(sample[i]) * share;
+    open_.samples += share;
+  }
+  [[nodiscard]] bool is_saturated(const UnitOutput<C>& sample) const {
+    const C z = sample[axial_];
+    return axial_range_ > C(0) && (z >= axial_range_ || z <= -axial_range_);
+  }
+  void look_at_range(const UnitOutput<C>& sample) { open_.saturated = open_.saturated || is_saturated(sample); }
+
+  std::size_t axial_;
+  Sum full_turn_;
+  C axial_range_;
+  Revolution<C> open_;
+  Revolution<C> closed_;
+  bool started_ = false;
+};
+
+}  // namespace trunnion
