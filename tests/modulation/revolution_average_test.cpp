@@ -196,7 +196,9 @@ TEST(RevolutionAverage, NoticesMissedAndBouncingPulses) {
       ++missed;
       average.add(platform.sample(i));
       for (int more = 1; more < 30; ++more) average.add(platform.sample(++i));  // past the mark, the turn is overdue
-      if (pulses > 2) EXPECT_EQ(average.turns_without_pulse(), 1);
+      if (pulses > 2) {
+        EXPECT_EQ(average.turns_without_pulse(), 1);
+      }
     } else if (pulse) {
       complete = average.add_with_pulse(platform.sample(i), before);
       if (pulses % 5 == 0) bounce_at = i + 2;

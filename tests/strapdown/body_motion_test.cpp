@@ -35,7 +35,7 @@ using Algorithms =
                    MultiSample<double, 4>, ExactSamples<double, 2>, ExactSamples<double, 3>, ExactSamples<double, 4>,
                    ExactSamples<double, 5>, ExactSamples<double, 6>, ExactSamples<double, 7>, ExactSamples<double, 8>,
                    ExactSamples<float, 6>, PreviousSample<float>, ExactSamples<long double, 6>>;
-TYPED_TEST_SUITE(EveryAlgorithm, Algorithms);
+TYPED_TEST_SUITE(EveryAlgorithm, Algorithms, );
 
 // The law: at a constant rate and force, rotation and velocity are those of eq. (2) of core/rotation.hpp and its
 // integral, from a millionth of a radian a sample to a quarter of a turn an update.

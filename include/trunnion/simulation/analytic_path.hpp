@@ -151,7 +151,7 @@ class PathTruth {
     const S across = (radius + pose.height) * cl;
     const S x = across * cos(pose.longitude);
     const S y = across * sin(pose.longitude);
-    const S z = (S(T(1.0L - kEarthEccentricity2)) * radius + pose.height) * sl;
+    const S z = (S(T(1) - T(kEarthEccentricity2)) * radius + pose.height) * sl;
     return {Vec3<T>(x.value, y.value, z.value), Vec3<T>(x.rate, y.rate, z.rate),
             Vec3<T>(x.acceleration, y.acceleration, z.acceleration)};
   }
