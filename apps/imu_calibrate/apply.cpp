@@ -21,8 +21,9 @@ struct Options {
   std::string calibration;
   std::string input;
   std::string output;
-  std::string channel = "IMU";
+  std::string channel;
   int recording = 0;
+  int of_run = 0;
 };
 
 /// Corrects samples and passes them on.
@@ -113,23 +114,27 @@ void apply(const Options& o) {
   if (is_run_file(o.input)) {
     run = io::read_run_file(o.input);
     const int recordings = static_cast<int>(run.recordings.size());
-    if (o.recording > recordings || (o.recording == 0 && recordings > 1))
+    if (o.of_run > recordings || (o.of_run == 0 && recordings > 1))
       throw Error(ExitCode::kUsage,
-                  o.input + ": has " + std::to_string(recordings) + " recordings: choose one with --recording");
-    files = run.recordings[static_cast<std::size_t>(std::max(1, o.recording) - 1)];
+                  o.input + ": has " + std::to_string(recordings) + " recordings: choose one with --of-run");
+    if (!o.channel.empty()) throw Error(ExitCode::kUsage, "--channel: the run file names its channels");
+    files = run.recordings[static_cast<std::size_t>(std::max(1, o.of_run) - 1)];
     files.encoder.clear();
   } else {
+    if (o.of_run > 0) throw Error(ExitCode::kUsage, "--of-run: " + o.input + " is no run file");
+    if (!o.channel.empty()) run.channels.imu = o.channel;
     (is_table(o.input) ? files.imu : files.lcm) = o.input;
   }
   const bool table = files.lcm.empty();
   if (table != is_table(o.output))
     throw Error(ExitCode::kUsage,
                 o.output + (table ? ": a corrected table is a .csv" : ": a corrected log is no table: name it .lcm"));
-  keep_inputs(o.output, {o.input, o.calibration, files.lcm, files.imu, files.gyro, files.accel});
+  std::vector<std::string> sources = files_of(run);
+  sources.insert(sources.end(), {o.input, o.calibration});
+  keep_inputs(o.output, sources);
   const UnitCorrection<double> correction(unit);
-  const long long samples =
-      table ? apply_to_table(o, run, files, correction)
-            : apply_to_log(files.lcm, is_run_file(o.input) ? run.channels.imu : o.channel, o.output, correction);
+  const long long samples = table ? apply_to_table(o, run, files, correction)
+                                  : apply_to_log(files.lcm, run.channels.imu, o.output, correction);
   std::printf("%s: %lld samples corrected\n", o.output.c_str(), samples);
 }
 
@@ -143,11 +148,13 @@ void add_apply(CLI::App& app, ExitCode& exit_code) {
       ->add_option("input", o->input,
                    "LCM log; CSV with the header t_s,gyro_x_rad_s,...,accel_z_m_s2; or the run file of a recording "
                    "(columns, raw "
-                   "counts), with --recording")
+                   "counts), with --of-run")
       ->required();
   command->add_option("-o,--output", o->output, "Corrected file to write; other channels of a log are copied")
       ->required();
-  command->add_option("--channel", o->channel, "IMU channel of the log")->capture_default_str();
+  command->add_option("--channel", o->channel, "IMU channel of the log; default IMU");
+  command->add_option("--of-run", o->of_run, "Of a run file with several: the recording to correct, from 1")
+      ->check(CLI::Range(1, 1000));
   command
       ->add_option("--recording", o->recording,
                    "Use the turn-on bias of this recording of the calibration, from 1; default the mean over them")

@@ -35,7 +35,9 @@ class ChannelStatistics {
  public:
   /// @return whether the stamp was the next one
   bool add(std::int64_t utime, std::initializer_list<double> values) {
-    switch (clock_.judge(utime)) {
+    const calibration::ChannelClock::Verdict verdict = clock_.judge(utime);
+    repeated_ = verdict == calibration::ChannelClock::Verdict::kDuplicate;
+    switch (verdict) {
       case calibration::ChannelClock::Verdict::kDuplicate:
         ++duplicates_;
         return false;
@@ -72,6 +74,8 @@ class ChannelStatistics {
     return true;
   }
 
+  /// Whether the last stamp was that of the sample before.
+  [[nodiscard]] bool repeated() const { return repeated_; }
   [[nodiscard]] bool empty() const { return messages_ == 0; }
 
   [[nodiscard]] Json summary(const std::vector<const char*>& names, double in_unit, const char* unit) const {
@@ -118,6 +122,7 @@ class ChannelStatistics {
   long long duplicates_ = 0;
   long long stray_ = 0;
   bool reset_ = false;
+  bool repeated_ = false;
   std::int64_t reset_at_ = 0;
   std::vector<float> steps_;
   std::vector<double> lowest_;
@@ -126,9 +131,10 @@ class ChannelStatistics {
 
 class InspectSink final : public SampleSink {
  public:
-  explicit InspectSink(const std::string& name) : parts_(name) {}
+  InspectSink(const std::string& name, const calibration::SensorRange& range) : parts_(name), range_(range) {}
   void imu(std::int64_t utime, const InertialSample<double>& s) override {
-    if (imu_.add(utime, {s.w.x(), s.w.y(), s.w.z(), s.f.x(), s.f.y(), s.f.z()})) parts_.imu(utime, s);
+    const bool next = imu_.add(utime, {s.w.x(), s.w.y(), s.w.z(), s.f.x(), s.f.y(), s.f.z()});
+    if (next || imu_.repeated()) parts_.imu(utime, s);
   }
   void encoder(std::int64_t utime, double azimuth, double pitch) override { encoder_.add(utime, {azimuth, pitch}); }
 
@@ -137,7 +143,7 @@ class InspectSink final : public SampleSink {
     if (!imu_.empty()) {
       json["imu"] = imu_.summary({"gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z"}, 1.0, "rad/s, m/s^2");
       try {
-        add_parts(parts_.finish({}), json);
+        add_parts(parts_.finish(range_), json);
       } catch (const Error& e) {
         json["refused"] = e.what();
       }
@@ -160,6 +166,7 @@ class InspectSink final : public SampleSink {
   ChannelStatistics imu_;
   ChannelStatistics encoder_;
   calibration::RestsAndTurns parts_;
+  calibration::SensorRange range_;
 };
 
 /// Every channel of a log and how many messages it has: shown when the channels asked for are not there.
@@ -176,7 +183,7 @@ Json inspect_recording(const io::RunFile& run, const io::RecordingFiles& files) 
   Json json = {{"file", files.name()}};
   if (!files.mount.empty()) json["mount"] = files.mount;
   if (!files.lcm.empty()) count_channels(files.lcm, json);
-  InspectSink sink(files.name());
+  InspectSink sink(files.name(), {run.sheet.gyro_range, run.sheet.accel_range});
   std::vector<std::pair<std::string, std::string>> digests;
   try {
     io::read_recording(run, files, sink, digests);

@@ -96,6 +96,13 @@ void collect(RunInputs& inputs, std::vector<RunInputs>& each) {
 bool is_run_file(const std::string& path) { return has_extension(path, {".yaml", ".yml"}); }
 bool is_table(const std::string& path) { return has_extension(path, {".csv", ".txt", ".tsv", ".dat", ".mat"}); }
 
+std::vector<std::string> files_of(const io::RunFile& run) {
+  std::vector<std::string> files = {run.path, run.rig, run.sheet_path};
+  for (const io::RecordingFiles& recording : run.recordings)
+    files.insert(files.end(), {recording.lcm, recording.imu, recording.encoder, recording.gyro, recording.accel});
+  return files;
+}
+
 void keep_inputs(const std::string& output, const std::vector<std::string>& inputs) {
   for (const std::string& input : inputs) {
     std::error_code error;

@@ -25,6 +25,9 @@ struct RunInputs {
 bool is_run_file(const std::string& path);
 bool is_table(const std::string& path);
 
+/// Every file that a run names, itself included.
+std::vector<std::string> files_of(const io::RunFile& run);
+
 /// Refuses (usage) an output that is one of the inputs: they are raw data.
 void keep_inputs(const std::string& output, const std::vector<std::string>& inputs);
 

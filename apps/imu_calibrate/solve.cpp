@@ -50,7 +50,7 @@ void judge_limits(const io::RunFile& run, const calibration::Solution& solution,
   file.within_limits = file.out_of_limits.empty();
 }
 
-void print_text(const calibration::Solution& solution, const io::CalibrationFile& file) {
+void print_text(const calibration::Solution& solution, const io::CalibrationFile& file, bool sheet_noise) {
   std::printf("%-44s %14s %12s  %s\n", "entry", "value", "1 sigma", "unit");
   for (std::size_t i = 0; i < solution.parameters.size(); ++i) {
     const calibration::Parameter& p = solution.parameters[i];
@@ -69,7 +69,7 @@ void print_text(const calibration::Solution& solution, const io::CalibrationFile
       "\nfit: %lld samples, %lld windows, %lld outliers, %lld records and %lld bytes lost, reduced chi-square %.4f, %d "
       "iterations\n",
       fit.samples, fit.windows, fit.outliers, fit.lost_records, fit.lost_bytes, fit.reduced_chi_square, fit.iterations);
-  if (fit.reduced_chi_square < kQuiet) {
+  if (sheet_noise && fit.reduced_chi_square < kQuiet) {
     std::printf("the data are quieter than the sheet says: every sigma is too large by some %s; leave its noise out\n",
                 figure(1.0 / std::sqrt(fit.reduced_chi_square), 2).c_str());
   }
@@ -124,11 +124,7 @@ ExitCode solve(const Options& o) {
   const io::RunFile run = io::read_run_file(o.run);
   if (o.hold_out != 0 && !run.rig.empty())
     throw Error(ExitCode::kUsage, "--hold-out is for runs by hand: this run has a rig");
-  std::vector<std::string> sources = {o.run, run.rig, run.sheet_path};
-  for (const io::RecordingFiles& files : run.recordings) {
-    sources.insert(sources.end(), {files.lcm, files.imu, files.encoder, files.gyro, files.accel});
-  }
-  keep_inputs(o.output, sources);
+  keep_inputs(o.output, files_of(run));
   RunInputs inputs;
   io::CalibrationFile file;
   std::vector<double> held_out;
@@ -166,7 +162,7 @@ ExitCode solve(const Options& o) {
   if (o.format == "json") {
     std::fputs(io::to_json(file).c_str(), stdout);
   } else {
-    print_text(solution, file);
+    print_text(solution, file, run.sheet.has_noise);
     if (!held_out.empty()) {
       double squares = 0.0;
       for (const double error : held_out) squares += error * error;

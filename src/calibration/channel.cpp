@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kSaturatedFraction = 1e-3;
 constexpr double kBunched = 1.5;
+constexpr double kRepeated = 0.1;  // of the samples
 constexpr double kCrowded = 1.05;  // samples for each period of the span
 
 }  // namespace
@@ -41,14 +42,16 @@ double sample_period(std::vector<double>& steps, const std::string& recording) {
                                       " ms on average; do two units publish on one channel, or are these times of "
                                       "arrival instead of times of measurement?");
   }
-  return median;
+  // stamps in whole milliseconds step 2, 3, 2, 3: the mean of what is within half of the median knows better
+  const auto from = std::lower_bound(steps.begin(), steps.end(), 0.5 * median);
+  const auto to = std::upper_bound(from, steps.end(), kBunched * median);
+  return std::accumulate(from, to, 0.0) / static_cast<double>(to - from);
 }
 
-void check_saturation(const RecordingFigures& figures, const std::string& recording) {
-  const long long offered = figures.samples + figures.saturated + figures.outliers;
-  if (static_cast<double>(figures.saturated) > kSaturatedFraction * static_cast<double>(offered)) {
+void check_saturation(const RecordingFigures& figures, long long used, const std::string& recording) {
+  if (static_cast<double>(figures.saturated) > kSaturatedFraction * static_cast<double>(used)) {
     throw Error(ExitCode::kInput, recording + ": saturated: " + std::to_string(figures.saturated) + " of " +
-                                      std::to_string(offered) + " samples at or past the sheet's range, first at " +
+                                      std::to_string(used) + " samples at or past the sheet's range, first at " +
                                       std::to_string(figures.first_saturated) +
                                       " s; turn slower, or correct the range or the nominal scale in the sheet");
   }
@@ -57,6 +60,11 @@ void check_saturation(const RecordingFigures& figures, const std::string& record
 void check_crowding(const RecordingFigures& figures, const std::string& recording) {
   const long long offered = figures.samples + figures.saturated + figures.outliers;
   const auto count = static_cast<double>(offered);
+  if (static_cast<double>(figures.duplicates) > kRepeated * count) {
+    throw Error(ExitCode::kInput, recording + ": " + std::to_string(figures.duplicates) + " stamps repeat, " +
+                                      std::to_string(offered) +
+                                      " samples do not: the stamps are coarser than the samples");
+  }
   if (count * figures.period > kCrowded * (figures.duration + 2.0 * figures.period)) {
     throw Error(ExitCode::kInput, recording + ": " + std::to_string(offered) + " samples of " +
                                       std::to_string(1e3 * figures.period) + " ms do not fit into " +

@@ -77,7 +77,7 @@ void Compressor::imu(std::int64_t utime, const InertialSample<double>& sample) {
 }
 
 void Compressor::encoder(std::int64_t utime, double azimuth, double pitch) {
-  const auto verdict = judge_and_count(encoder_clock_, utime, options_.name, "encoder", result_.figures);
+  const auto verdict = judge_and_count(encoder_clock_, utime, options_.name, "encoder", encoder_figures_);
   if (verdict == ChannelClock::Verdict::kNextAndFirstWasStray) {
     result_.course = EncoderCourse();
   } else if (verdict != ChannelClock::Verdict::kNext) {
@@ -228,8 +228,10 @@ CompressedRecording Compressor::finish() {
   }
   if (!t_.empty()) close_window();
   figures.duration = t_last_ - t_first_;
-  check_saturation(figures, options_.name);
+  check_saturation(figures, figures.samples + figures.saturated + figures.outliers, options_.name);
   check_crowding(figures, options_.name);
+  figures.duplicates += encoder_figures_.duplicates;  // of no harm: an encoder may be read more often than it moves
+  figures.stray += encoder_figures_.stray;
   result_.course.finish();
   return std::move(result_);
 }

@@ -172,13 +172,20 @@ double RecordingModel::force_at_rest() const {
 }
 
 double RecordingModel::rate_ratio() const {
+  Vec3<double> bias = Vec3<double>::Zero();  // where the table stands still
+  int still = 0;
+  for (std::size_t k = 0; k < usable_.size(); ++k) {
+    const auto reading = recording_.data.course.at(window(k).t);
+    if (std::abs(reading[0].rate) + std::abs(reading[1].rate) >= kSlowRate) continue;
+    bias += (window(k).mean.w - bias) / ++still;
+  }
   std::vector<double> ratio;
   for (std::size_t k = 0; k < usable_.size(); ++k) {
     const auto reading = recording_.data.course.at(window(k).t);
     const double rate = std::hypot(reading[0].rate, reading[1].rate);
-    if (rate > kTurningRate) ratio.push_back(window(k).mean.w.norm() / rate);
+    if (rate > kTurningRate) ratio.push_back((window(k).mean.w - bias).norm() / rate);
   }
-  if (ratio.empty()) return 1.0;
+  if (ratio.empty() || still == 0) return 1.0;
   const auto middle = ratio.begin() + static_cast<std::ptrdiff_t>(ratio.size() / 2);
   std::nth_element(ratio.begin(), middle, ratio.end());
   return *middle;

@@ -49,7 +49,8 @@ class RecordingModel {
   /// Median specific force of the slow windows [m/s^2]; gravity where there are none.
   [[nodiscard]] double force_at_rest() const;
 
-  /// Median of the gyros' rate against the encoders' over the turning windows; 1 where there are none.
+  /// Median of the gyros' rate, less its mean at rest, against the encoders' over the turning windows; 1 where there
+  /// is neither.
   [[nodiscard]] double rate_ratio() const;
 
   /// Adds |step| between neighbouring windows at rest, scaled to a noise density.

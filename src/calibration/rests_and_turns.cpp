@@ -193,8 +193,10 @@ HandRecording RestsAndTurns::finish(const SensorRange& range) {
   for (std::size_t i = rest_first.empty() ? n : rest_first.front(); i < n && i < rest_last.back(); ++i) {
     if (range.saturated(samples_[i].value) && ++figures.saturated == 1) figures.first_saturated = samples_[i].t;
   }
-  figures.samples -= figures.saturated;
-  check_saturation(figures, result_.name);
+  long long turning = 0;
+  for (std::size_t r = 0; r + 1 < rest_first.size(); ++r)
+    turning += static_cast<long long>(rest_first[r + 1] - rest_last[r]);
+  check_saturation(figures, turning, result_.name);
   samples_ = {};
   return std::move(result_);
 }

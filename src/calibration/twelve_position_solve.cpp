@@ -383,7 +383,7 @@ class TableProblem {
     layout_.write(start_, solution.x);
     solution.observability = judge(information, layout_.parameters);
     if (solution.observability.refused.empty()) {
-      const std::string beyond = implausible(solution.parameters, solution.x);
+      const std::string beyond = converged_ ? implausible(solution.parameters, solution.x) : std::string();
       if (!beyond.empty()) {
         throw Error(
             ExitCode::kInput,

@@ -165,6 +165,21 @@ TEST(Compressor, RefusesTwoPublishersOnOneChannel) {
   });
 }
 
+// Stamps in whole milliseconds, 2, 3, 2, 3 apart: 400 Hz from either phase.
+TEST(Compressor, KnowsThePeriodOfCoarseStamps) {
+  const InertialSample<double> s{Vec3<double>::Zero(), Vec3<double>(0, 0, 9.8)};
+  for (const int phase : {0, 1}) {
+    Compressor compressor(named());
+    for (int i = phase; i < 4000; ++i) compressor.imu(kStart + (2500 * i) / 1000 * 1000, s);
+    EXPECT_NEAR(compressor.finish().figures.period, 0.0025, 1e-5) << phase;
+  }
+  Compressor compressor(named());
+  EXPECT_REFUSES(ExitCode::kInput, "the stamps are coarser than the samples", {
+    for (int i = 0; i < 4000; ++i) compressor.imu(kStart + (2500 * i) / 10000 * 10000, s);
+    static_cast<void>(compressor.finish());
+  });
+}
+
 TEST(Compressor, RefusesARecordingOfNothing) {
   Compressor compressor(named());
   EXPECT_THROW(compressor.finish(), Error);

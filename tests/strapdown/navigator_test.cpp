@@ -257,6 +257,9 @@ TEST(Navigator, RefusesWhatIsNotFiniteAndGoesOn) {
       (i % 2 == 0 ? bad.angle : bad.velocity)(i % 3) =
           i % 4 == 0 ? std::numeric_limits<double>::quiet_NaN() : std::numeric_limits<double>::infinity();
       EXPECT_EQ(troubled.add(bad), Status::kOutOfRange);
+      bad = increment;
+      bad.angle(i % 3) = 100.0;
+      EXPECT_EQ(troubled.add(bad), Status::kOutOfRange);
     }
     EXPECT_EQ(plain.add(increment), Status::kOk);
     EXPECT_EQ(troubled.add(increment), Status::kOk);

@@ -95,14 +95,16 @@ struct SensorRange {
 ChannelClock::Verdict judge_and_count(ChannelClock& clock, std::int64_t utime, const std::string& recording,
                                       const char* channel, RecordingFigures& figures);
 
-/// The sample period [s]: median of the steps between stamps, which it sorts. @param steps not empty
+/// The sample period [s]: mean of the steps between stamps, which it sorts, that are near their median.
+/// @param steps not empty
 /// @throws Error (input) when their mean, without the longest hundredth, is another: stamps that come in bunches
 double sample_period(std::vector<double>& steps, const std::string& recording);
 
-/// @throws Error (input) when more than one sample in a thousand was saturated
-void check_saturation(const RecordingFigures& figures, const std::string& recording);
+/// @throws Error (input) when more than one in a thousand of the @p used samples was saturated
+void check_saturation(const RecordingFigures& figures, long long used, const std::string& recording);
 
-/// @throws Error (input) when there are more samples than periods: another publisher came in later
+/// @throws Error (input) when there are more samples than periods, as when another publisher came in later, or when
+/// more than a tenth of the stamps repeat
 void check_crowding(const RecordingFigures& figures, const std::string& recording);
 
 }  // namespace trunnion::calibration

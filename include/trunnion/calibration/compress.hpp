@@ -64,6 +64,7 @@ class Compressor final : public SampleSink {
   CompressedRecording result_;
   ChannelClock imu_clock_;
   ChannelClock encoder_clock_;
+  RecordingFigures encoder_figures_;
   bool has_origin_ = false;
   std::int64_t origin_ = 0;
   double t_first_ = 0.0;

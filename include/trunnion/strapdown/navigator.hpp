@@ -108,10 +108,10 @@ class Navigator {
   }
 
   /// Takes the next sample; with the last of an update the state moves on, and updated() is true.
-  /// @return kOutOfRange, and nothing changed, for a sample that is not finite
+  /// @return kOutOfRange, and nothing changed, for a sample that is not finite or turns by more than a radian
   Status add(const Increment<T>& sample) {
     const T sum = sample.angle.sum() + sample.velocity.sum();
-    if (!(sum - sum == T(0))) return Status::kOutOfRange;
+    if (!(sum - sum == T(0)) || !(sample.angle.squaredNorm() <= T(1))) return Status::kOutOfRange;
     sample_[count_++] = sample;
     updated_ = count_ == sample_.size();
     if (updated_) {
