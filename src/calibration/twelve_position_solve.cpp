@@ -141,6 +141,9 @@ class TableProblem {
     say("solving");
     reweigh();  // the coarse estimate is good enough to know an outlier by
     int iterations = minimise(start_);
+    Eigen::VectorXd x;
+    layout_.write(start_, x);
+    if (!implausible(layout_.parameters, x).empty()) return conclude(noise, iterations);  // more rounds mend no mistake
     if (options_.noise_from_data) {
       for (int round = 0; round < 2; ++round) {
         say("noise from the residuals");
