@@ -147,8 +147,7 @@ void add_apply(CLI::App& app, ExitCode& exit_code) {
   command
       ->add_option("input", o->input,
                    "LCM log; CSV with the header t_s,gyro_x_rad_s,...,accel_z_m_s2; or the run file of a recording "
-                   "(columns, raw "
-                   "counts), with --of-run")
+                   "(columns, raw counts), with --of-run")
       ->required();
   command->add_option("-o,--output", o->output, "Corrected file to write; other channels of a log are copied")
       ->required();

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "calibration/experiment.hpp"
-#include "trunnion/core/error.hpp"
+#include "matchers/refuses.hpp"
 
 namespace trunnion::calibration {
 namespace {
@@ -117,13 +117,8 @@ TEST(SolveTable, RefusesARecordingWithoutCommonTime) {
   recordings.push_back({compressor.finish(), 0});
   TableSolveOptions solve_options;
   solve_options.noise = settings().noise;
-  try {
-    solve_table(recordings, cyclic_rig(), bench(), solve_options);
-    FAIL() << "not refused";
-  } catch (const Error& e) {
-    EXPECT_EQ(e.code(), ExitCode::kInput);
-    EXPECT_THAT(e.what(), HasSubstr("apart: the encoders and the IMU do not overlap in time"));
-  }
+  EXPECT_REFUSES(ExitCode::kInput, "apart: the encoders and the IMU do not overlap in time",
+                 solve_table(recordings, cyclic_rig(), bench(), solve_options));
 }
 
 // A unit that reads g where m/s^2 is expected is no unit with a scale error of -900,000 ppm.
@@ -134,13 +129,8 @@ TEST(SolveTable, RefusesAWrongUnitOfTheAccelerometers) {
   }
   TableSolveOptions options;
   options.noise = settings().noise;
-  try {
-    solve_table(in_g, cyclic_rig(), bench(), options);
-    FAIL() << "not refused";
-  } catch (const Error& e) {
-    EXPECT_EQ(e.code(), ExitCode::kInput);
-    EXPECT_THAT(e.what(), HasSubstr("wrong unit or nominal scale of the accelerometers"));
-  }
+  EXPECT_REFUSES(ExitCode::kInput, "wrong unit or nominal scale of the accelerometers",
+                 solve_table(in_g, cyclic_rig(), bench(), options));
 }
 
 // A sheet that promises a tenth of the noise: the fit says so, and no sigma is printed.
@@ -149,13 +139,8 @@ TEST(SolveTable, RefusesDataThatDoNotFitTheirSheet) {
   options.noise = settings().noise;
   options.noise.gyro.density *= 0.1;
   options.noise.accel.density *= 0.1;
-  try {
-    solve_table(noisy().recordings, cyclic_rig(), bench(), options);
-    FAIL() << "not refused";
-  } catch (const Error& e) {
-    EXPECT_EQ(e.code(), ExitCode::kNumerics);
-    EXPECT_THAT(e.what(), HasSubstr("the data do not fit the model"));
-  }
+  EXPECT_REFUSES(ExitCode::kNumerics, "the data do not fit the model",
+                 solve_table(noisy().recordings, cyclic_rig(), bench(), options));
 }
 
 // A clock offset that the run file states is taken as it is.

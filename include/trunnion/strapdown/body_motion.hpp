@@ -87,7 +87,7 @@ struct PolynomialFit {
   Square<kEven> even;  // rows w_0, w_2, ...; columns theta_i + theta_(N-1-i)
   Square<kOdd> odd;    // rows w_1, w_3, ...; columns theta_i - theta_(N-1-i)
 
-  constexpr PolynomialFit() : even(inverse<kEven>(0)), odd(inverse < kOdd == 0 ? 1 : kOdd > (1)) {}
+  constexpr PolynomialFit() : even(inverse<kEven>(0)), odd(inverse<kOdd>(1)) {}
 
  private:
   static constexpr double power(double x, std::size_t n) {
@@ -162,9 +162,6 @@ class PreviousSample {
     return body_motion(theta + cross(theta_before, theta), v, cross(theta_before, v) + cross(v_before, theta));
   }
 
-  /// Forgets the sample before, as after a gap.
-  void restart() { previous_ = Increment<T>{}; }
-
  private:
   Increment<T> previous_;
 };
@@ -197,8 +194,6 @@ class MultiSample {
     }
     return body_motion(theta + cross(theta_k, last_theta), v, cross(theta_k, last_v) + cross(v_k, last_theta));
   }
-
-  void restart() {}
 };
 
 /// N samples an update as polynomials, integrated to the scalar's rounding, eq. (3)-(5).
@@ -267,8 +262,6 @@ class ExactSamples {
     const Triple turned = T(2) * cross(turn.v, y_end);
     return {turn.w, vector(turn.v), vector(T(2) * odd_y + ((T(1) + turn.w) * turned + cross(turn.v, turned)))};
   }
-
-  void restart() {}
 
  private:
   using Triple = strapdown_detail::Triple<T>;
