@@ -16,6 +16,11 @@ double smooth(double u) {
   return u * u * u * (10.0 + u * (6.0 * u - 15.0));
 }
 
+double smooth_slope(double u) {
+  u = std::clamp(u, 0.0, 1.0);
+  return 30.0 * u * u * (1.0 - u) * (1.0 - u);
+}
+
 /// Integral of smooth() from 0 to u, for u >= 0.
 double smooth_integral(double u) {
   const double inside = std::min(u, 1.0);
@@ -61,6 +66,28 @@ double AxisCourse::angle(double t) const {
     angle += envelope * o.amplitude * std::sin(2.0 * kPi * o.frequency * (t - o.from));
   }
   return angle;
+}
+
+double AxisCourse::rate(double t) const {
+  double rate = 0.0;
+  const auto after =
+      std::upper_bound(ramps_.begin(), ramps_.end(), t, [](double time, const Ramp& ramp) { return time < ramp.t; });
+  if (after != ramps_.begin()) {
+    const Ramp& ramp = *(after - 1);
+    rate = ramp.rate_before + (ramp.rate_after - ramp.rate_before) * smooth((t - ramp.t) / ramp.duration);
+  }
+  for (const Move& move : moves_) rate += move.step / move.duration * smooth_slope((t - move.t) / move.duration);
+  for (const Oscillation& o : oscillations_) {
+    if (t <= o.from || t >= o.to) continue;
+    const double in = (t - o.from) / o.fade;
+    const double out = (o.to - t) / o.fade;
+    const double w = 2.0 * kPi * o.frequency;
+    const double phase = w * (t - o.from);
+    rate +=
+        o.amplitude * (smooth(in) * smooth(out) * w * std::cos(phase) +
+                       (smooth_slope(in) * smooth(out) - smooth(in) * smooth_slope(out)) / o.fade * std::sin(phase));
+  }
+  return rate;
 }
 
 }  // namespace trunnion::simulation

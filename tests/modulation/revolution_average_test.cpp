@@ -55,8 +55,11 @@ TEST(RevolutionAverage, KeepsTheBiasAndLosesTheBody) {
   int turns = 0;
   for (long long i = 0; i < 4000; ++i) {
     double before = 0.0;
-    const bool complete = platform.pulse(i, before) ? average.add_with_pulse(platform.sample(i), before)
-                                                    : (average.add(platform.sample(i)), false);
+    bool complete = false;
+    if (platform.pulse(i, before))
+      complete = average.add_with_pulse(platform.sample(i), before) == Pulse::kTurn;
+    else
+      average.add(platform.sample(i));
     if (!complete) continue;
     ++turns;
     const Revolution<double>& turn = average.turn();
@@ -97,8 +100,8 @@ TEST(RevolutionAverage, InterpolationReachesTheFloorOfWhiteNoise) {
         coarse.add(s);
         continue;
       }
-      if (fine.add_with_pulse(s, before)) fine_means.push_back(fine.turn().mean(3));
-      if (coarse.add_with_pulse(s, 1.0)) coarse_means.push_back(coarse.turn().mean(3));
+      if (fine.add_with_pulse(s, before) == Pulse::kTurn) fine_means.push_back(fine.turn().mean(3));
+      if (coarse.add_with_pulse(s, 1.0) == Pulse::kTurn) coarse_means.push_back(coarse.turn().mean(3));
     }
     const double floor = kDensity * std::sqrt(rate);
     const double milli = 1e-3 * kStandardGravity;
@@ -135,7 +138,7 @@ TEST(RevolutionAverage, IntegersLoseNothing) {
       for (std::size_t k = 0; k < 6; ++k) in[k] += before * s[k];
       carried += before;
     }
-    const bool complete = average.add_with_pulse(s, before);
+    const bool complete = average.add_with_pulse(s, before) == Pulse::kTurn;
     EXPECT_EQ(complete, !first);
     if (complete) {
       for (std::size_t k = 0; k < 6; ++k) out[k] += average.turn().sum[k];
@@ -167,8 +170,8 @@ TEST(RevolutionAverage, IntegersFollowDouble) {
       continue;
     }
     const auto share = static_cast<std::int64_t>(std::lround(65536.0 * before));
-    const bool complete = counts.add_with_pulse(c, share);
-    ASSERT_EQ(reals.add_with_pulse(s, static_cast<double>(share) / 65536.0), complete);
+    const bool complete = counts.add_with_pulse(c, share) == Pulse::kTurn;
+    ASSERT_EQ(reals.add_with_pulse(s, static_cast<double>(share) / 65536.0) == Pulse::kTurn, complete);
     if (!complete) continue;
     ++turns;
     for (std::size_t k = 0; k < 6; ++k)
@@ -200,11 +203,10 @@ TEST(RevolutionAverage, NoticesMissedAndBouncingPulses) {
         EXPECT_EQ(average.turns_without_pulse(), 1);
       }
     } else if (pulse) {
-      complete = average.add_with_pulse(platform.sample(i), before);
+      complete = average.add_with_pulse(platform.sample(i), before) == Pulse::kTurn;
       if (pulses % 5 == 0) bounce_at = i + 2;
     } else if (i == bounce_at) {
-      complete = average.add_with_pulse(platform.sample(i), 0.5);
-      EXPECT_FALSE(complete);
+      EXPECT_EQ(average.add_with_pulse(platform.sample(i), 0.5), Pulse::kBounce);
       ++bounces;
     } else {
       average.add(platform.sample(i));
@@ -227,15 +229,17 @@ TEST(RevolutionAverage, SaysWhenTheAxialGyroSaturated) {
   fine[2] = 20000;
   UnitOutput<std::int16_t> pinned = fine;
   pinned[2] = -32767;
-  EXPECT_FALSE(average.add_with_pulse(fine, 0));
+  EXPECT_EQ(average.add_with_pulse(fine, 0), Pulse::kFirst);
   average.add(fine);
   average.add(fine);
   average.add(fine);
-  EXPECT_TRUE(average.add_with_pulse(fine, 9));
+  EXPECT_EQ(average.add_with_pulse(fine, 9), Pulse::kTurn);
   EXPECT_FALSE(average.turn().saturated);
-  average.add(pinned);
-  EXPECT_TRUE(average.add_with_pulse(fine, 9));
+  for (int i = 0; i < 7; ++i) average.add(pinned);
+  EXPECT_EQ(average.add_with_pulse(fine, 9), Pulse::kTurn);
   EXPECT_TRUE(average.turn().saturated);
+  EXPECT_EQ(average.turn().turns, 2);  // by the time of the turn before
+  EXPECT_EQ(average.add_with_pulse(pinned, 9), Pulse::kBounce);
 }
 
 }  // namespace

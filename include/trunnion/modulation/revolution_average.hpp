@@ -50,7 +50,7 @@ struct Revolution {
   Sum samples{};             ///< in kOne: T is samples / kOne sample periods
   int turns = 0;             ///< between the two pulses: more than one where pulses were missed
   int bounces = 0;           ///< pulses passed over within it
-  bool saturated = false;    ///< the axial gyro was at its range: turns is not to be believed
+  bool saturated = false;    ///< the axial gyro was at its range: turns comes from the time of the turn before
 
   /// Mean of an output over the turn, eq. (1); integers round to the nearest count.
   [[nodiscard]] C mean(std::size_t output) const {
@@ -62,6 +62,13 @@ struct Revolution {
       return s / samples;
     }
   }
+};
+
+/// What an index pulse turned out to be.
+enum class Pulse : std::uint8_t {
+  kFirst,   ///< a turn begins; none was open
+  kTurn,    ///< a turn, or several of which pulses were missed, is complete
+  kBounce,  ///< less than half a turn after the last: passed over
 };
 
 template <class C>
@@ -83,20 +90,25 @@ class RevolutionAverage {
   }
 
   /// A sample with a pulse in it. @param before fraction of the sample that lies before the pulse, in [0, kOne]
-  /// @return whether a turn is complete: turn()
-  bool add_with_pulse(const UnitOutput<C>& sample, Sum before) {
+  /// @return kTurn: the turn stands in turn()
+  Pulse add_with_pulse(const UnitOutput<C>& sample, Sum before) {
     look_at_range(sample);
     const Sum angle = open_.sum[axial_] + static_cast<Sum>(sample[axial_]) * before;
-    const Sum size = angle < Sum(0) ? -angle : angle;
-    const Sum turn_size = full_turn_ * kOne;
-    if (started_ && !open_.saturated && size < turn_size / Sum(2)) {
+    Sum size = angle < Sum(0) ? -angle : angle;
+    Sum turn_size = full_turn_ * kOne;
+    if (open_.saturated && closed_.turns > 0) {  // the gyro says too little: the last turn's time stands in for it
+      size = open_.samples + before;
+      turn_size = closed_.samples / static_cast<Sum>(closed_.turns);
+    }
+    const bool bounce = started_ && size < turn_size / Sum(2);
+    if (bounce) {
       accumulate(sample, kOne);
       ++open_.bounces;
-      return false;
+      return Pulse::kBounce;
     }
     accumulate(sample, before);
-    const bool complete = started_;
-    if (complete) {
+    const Pulse pulse = started_ ? Pulse::kTurn : Pulse::kFirst;
+    if (started_) {
       closed_ = open_;
       closed_.turns = static_cast<int>((size + turn_size / Sum(2)) / turn_size);
     }
@@ -105,7 +117,13 @@ class RevolutionAverage {
     open_.saturated = still_saturated;
     started_ = true;
     accumulate(sample, kOne - before);
-    return complete;
+    return pulse;
+  }
+
+  /// Forgets the open turn: the axis was not followed for a while.
+  void restart() {
+    open_ = Revolution<C>{};
+    started_ = false;
   }
 
   /// The last complete turn.

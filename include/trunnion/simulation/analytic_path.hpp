@@ -54,6 +54,28 @@ struct TimeJet {
   }
 };
 
+/// Integrals over [from, to] of @p sample, a callable InertialSample<T>(T t): Gauss-Legendre with six points.
+template <class T, class Sampler>
+Increment<T> integrate(const Sampler& sample, T from, T to) {
+  constexpr std::array<T, 3> kNode = {T(0.238619186083196908630501721680711935L),
+                                      T(0.661209386466264513661399595019905347L),
+                                      T(0.932469514203152027812301554493994609L)};
+  constexpr std::array<T, 3> kWeight = {T(0.467913934572691047389870343989550995L),
+                                        T(0.360761573048138607569833513837716112L),
+                                        T(0.171324492379170345040296142172732894L)};
+  const T middle = (from + to) / T(2);
+  const T half = (to - from) / T(2);
+  Increment<T> increment;
+  for (std::size_t i = 0; i < kNode.size(); ++i) {
+    for (const T side : {T(-1), T(1)}) {
+      const InertialSample<T> s = sample(middle + side * kNode[i] * half);
+      increment.angle += kWeight[i] * half * s.w;
+      increment.velocity += kWeight[i] * half * s.f;
+    }
+  }
+  return increment;
+}
+
 /// Where a path is at one time: geodetic position and roll, pitch, yaw of C_nb, n = north-east-down. Radians, metres.
 template <class S>
 struct Pose {
@@ -106,23 +128,7 @@ class PathTruth {
 
   /// Integrals over [from, to].
   [[nodiscard]] Increment<T> increment(T from, T to) const {
-    constexpr std::array<T, 3> kNode = {0.238619186083196908630501721680711935L,
-                                        0.661209386466264513661399595019905347L,
-                                        0.932469514203152027812301554493994609L};
-    constexpr std::array<T, 3> kWeight = {0.467913934572691047389870343989550995L,
-                                          0.360761573048138607569833513837716112L,
-                                          0.171324492379170345040296142172732894L};
-    const T middle = (from + to) / T(2);
-    const T half = (to - from) / T(2);
-    Increment<T> increment;
-    for (std::size_t i = 0; i < kNode.size(); ++i) {
-      for (const T side : {T(-1), T(1)}) {
-        const InertialSample<T> s = sample(middle + side * kNode[i] * half);
-        increment.angle += kWeight[i] * half * s.w;
-        increment.velocity += kWeight[i] * half * s.f;
-      }
-    }
-    return increment;
+    return integrate([this](T t) { return sample(t); }, from, to);
   }
 
  private:

@@ -27,6 +27,8 @@ class AxisCourse {
   void oscillate(double from, double to, double amplitude, double frequency, double fade);
 
   [[nodiscard]] double angle(double t) const;
+  /// rad/s, the derivative of angle().
+  [[nodiscard]] double rate(double t) const;
 
  private:
   struct Ramp {
