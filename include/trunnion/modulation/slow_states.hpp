@@ -71,6 +71,16 @@ class SlowStates {
     P_ = (T(0.5) * (P_ + P_.transpose())).eval();
   }
 
+  /// b was read directly, at rest. @param sigma of @p bias
+  void read_bias(const Plane& bias, const T& sigma) {
+    for (int i = 0; i < 2; ++i) {
+      x_(kBias + i) = bias(i);
+      P_.row(kBias + i).setZero();
+      P_.col(kBias + i).setZero();
+      P_(kBias + i, kBias + i) = sigma * sigma;
+    }
+  }
+
   /// u of a sample [body axes], free of b, delta and D as they are known now: its noise is the sample's, not filtered.
   [[nodiscard]] Plane correct(const Plane& m, const T& sine, const T& cosine, const T& r) const {
     const T dr = x_(kScale);
