@@ -17,7 +17,7 @@
 namespace trunnion {
 namespace {
 
-constexpr double kStep = 0.1;  // s, of the noise
+constexpr double kStep = 0.1;                             // s, of the noise
 const ScheduleTiming<double> kTiming = {0.5 * kPi, 3.0};  // a half turn in 2 s, 3 s of rest
 
 /// The attitude of every step of a cycle, from the table alone, by small turns.

@@ -13,6 +13,7 @@ enum class Status : std::uint8_t {
   kOk,
   kNotObservable,  ///< the data or the geometry cannot decide the answer
   kOutOfRange,     ///< an argument outside its stated range
+  kMovingBase,     ///< what should stand still, or swing about a point, goes somewhere
 };
 
 /// A value, or the reason why there is none. @code if (auto r = f(); r.ok()) use(r.value()); @endcode

@@ -121,6 +121,21 @@ class Navigator {
     return Status::kOk;
   }
 
+  /// Takes errors out that a filter has found, as strapdown/error_dynamics.hpp has them: true C_nb = Exp(phi) C_nb, dv
+  /// navigated minus true [m/s], in north-east-down; small. Not at a pole.
+  void correct(const Vec3<T>& phi, const Vec3<T>& dv) {
+    using std::sqrt;
+    const Triple p = earth_axis(q_en_.sum);
+    const T across = sqrt(p.x * p.x + p.y * p.y);
+    const T c = p.x / across;
+    const T s = p.y / across;
+    const auto in_n = [&c, &s](const Vec3<T>& v) { return turn_about_z(s, c, v); };
+    const Quaternion<T> turn = quaternion_exp<T>(in_n(phi));
+    const Quad step = {turn.w() - T(1), strapdown_detail::triple<T>(turn.vec())};
+    q_nb_.add(product(step, q_nb_.sum));
+    velocity_.add(T(-1) * strapdown_detail::triple<T>(in_n(dv)));
+  }
+
   /// Whether the last add() completed an update: every kSamples samples.
   [[nodiscard]] bool updated() const { return updated_; }
 
