@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <memory>
 
+#include "../terminal.hpp"
 #include "command.hpp"
 #include "recordings.hpp"
-#include "terminal.hpp"
 #include "trunnion/error_model/inertial_unit.hpp"
 #include "trunnion/io/calibration_file.hpp"
 #include "trunnion/io/csv.hpp"

@@ -6,8 +6,8 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "../terminal.hpp"
 #include "command.hpp"
-#include "terminal.hpp"
 #include "trunnion/core/units.hpp"
 #include "trunnion/io/calibration_file.hpp"
 

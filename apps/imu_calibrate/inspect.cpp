@@ -8,9 +8,9 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "../terminal.hpp"
 #include "command.hpp"
 #include "recordings.hpp"
-#include "terminal.hpp"
 #include "trunnion/calibration/compress.hpp"
 #include "trunnion/calibration/rests_and_turns.hpp"
 #include "trunnion/core/error.hpp"
@@ -35,24 +35,24 @@ class ChannelStatistics {
  public:
   /// @return whether the stamp was the next one
   bool add(std::int64_t utime, std::initializer_list<double> values) {
-    const calibration::ChannelClock::Verdict verdict = clock_.judge(utime);
-    repeated_ = verdict == calibration::ChannelClock::Verdict::kDuplicate;
+    const ChannelClock::Verdict verdict = clock_.judge(utime);
+    repeated_ = verdict == ChannelClock::Verdict::kDuplicate;
     switch (verdict) {
-      case calibration::ChannelClock::Verdict::kDuplicate:
+      case ChannelClock::Verdict::kDuplicate:
         ++duplicates_;
         return false;
-      case calibration::ChannelClock::Verdict::kReset:
+      case ChannelClock::Verdict::kReset:
         if (!reset_) reset_at_ = utime;
         reset_ = true;
         ++stray_;
         return false;
-      case calibration::ChannelClock::Verdict::kStray:
+      case ChannelClock::Verdict::kStray:
         ++stray_;
         return false;
-      case calibration::ChannelClock::Verdict::kNextAndFirstWasStray:
+      case ChannelClock::Verdict::kNextAndFirstWasStray:
         messages_ = 0;
         break;
-      case calibration::ChannelClock::Verdict::kNext:
+      case ChannelClock::Verdict::kNext:
         break;
     }
     if (messages_ == 0) {
@@ -60,8 +60,7 @@ class ChannelStatistics {
       lowest_.assign(values);
       highest_.assign(values);
     } else {
-      steps_.push_back(
-          static_cast<float>(1e-6 * static_cast<double>(calibration::ChannelClock::difference(utime, last_))));
+      steps_.push_back(static_cast<float>(1e-6 * static_cast<double>(ChannelClock::difference(utime, last_))));
     }
     last_ = utime;
     ++messages_;
@@ -105,7 +104,7 @@ class ChannelStatistics {
                  {"longest_gap_s", longest},
                  {"duplicates", duplicates_},
                  {"stray_stamps", stray_},
-                 {"duration_s", 1e-6 * static_cast<double>(calibration::ChannelClock::difference(last_, first_))}};
+                 {"duration_s", 1e-6 * static_cast<double>(ChannelClock::difference(last_, first_))}};
     for (std::size_t i = 0; i < names.size() && i < lowest_.size(); ++i) {
       json["range"][names[i]] = {lowest_[i] * in_unit, highest_[i] * in_unit};
     }
@@ -115,7 +114,7 @@ class ChannelStatistics {
   }
 
  private:
-  calibration::ChannelClock clock_;
+  ChannelClock clock_;
   std::int64_t first_ = 0;
   std::int64_t last_ = 0;
   long long messages_ = 0;

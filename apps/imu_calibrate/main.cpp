@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <exception>
 
+#include "../terminal.hpp"
 #include "command.hpp"
-#include "terminal.hpp"
 
 namespace trunnion::app {
 

@@ -12,7 +12,7 @@
 #include <system_error>
 #include <thread>
 
-#include "terminal.hpp"
+#include "../terminal.hpp"
 #include "trunnion/core/error.hpp"
 
 namespace trunnion::app {

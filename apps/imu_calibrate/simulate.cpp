@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <memory>
 
+#include "../terminal.hpp"
 #include "command.hpp"
-#include "terminal.hpp"
 #include "trunnion/core/earth.hpp"
 #include "trunnion/core/units.hpp"
 #include "trunnion/io/calibration_file.hpp"

@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <memory>
 
+#include "../terminal.hpp"
 #include "command.hpp"
 #include "recordings.hpp"
-#include "terminal.hpp"
 #include "trunnion/calibration/multi_position_solve.hpp"
 #include "trunnion/io/calibration_file.hpp"
 #include "trunnion/io/digest.hpp"

@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <limits>
 #include <vector>
 
@@ -32,6 +33,7 @@ constexpr std::array<Unit, 3> kRateUnits = {
 constexpr std::array<Unit, 3> kForceUnits = {
     {{"m/s^2", "_m_s2", 1.0}, {"g", "_g", kStandardGravity}, {"mg", "_mg", 1e-3 * kStandardGravity}}};
 constexpr std::array<Unit, 2> kAngleUnits = {{{"rad", "_rad", 1.0}, {"deg", "_deg", kRadPerDeg}}};
+constexpr std::array<Unit, 1> kLengthUnits = {{{"m", "_m", 1.0}}};
 constexpr double kLargestReading = 1e6;  // rad/s, m/s^2, rad
 constexpr const char* kCounts = "counts";
 constexpr std::array<const char*, 6> kSensors = {"gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z"};
@@ -45,6 +47,7 @@ Units units_of(const std::string& quantity) {
   if (quantity == "t") return {kTimeUnits.data(), kTimeUnits.size()};
   if (quantity.rfind("gyro_", 0) == 0) return {kRateUnits.data(), kRateUnits.size()};
   if (quantity.rfind("accel_", 0) == 0) return {kForceUnits.data(), kForceUnits.size()};
+  if (quantity == "h") return {kLengthUnits.data(), kLengthUnits.size()};
   return {kAngleUnits.data(), kAngleUnits.size()};
 }
 
@@ -325,6 +328,14 @@ void read_encoder_csv(const std::string& path, const ColumnMap& columns, SampleS
   table.choose({"t", "azimuth", "pitch"}, map, SensorSheet{});
   std::array<double, 3> v{};
   while (table.row(v.data())) sink.encoder(to_utime(v[0], table), v[1], v[2]);
+}
+
+void read_columns_csv(const std::string& path, const std::vector<std::string>& quantities,
+                      const std::function<void(const double*)>& row, std::string& digest) {
+  Table table(path, digest);
+  table.choose(quantities, {}, SensorSheet{});
+  std::vector<double> values(quantities.size());
+  while (table.row(values.data())) row(values.data());
 }
 
 std::string imu_csv_header() {

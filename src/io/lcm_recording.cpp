@@ -191,4 +191,23 @@ void encode_encoder(std::int64_t utime, std::int64_t sequence, double azimuth, d
   append_double(out, pitch);
 }
 
+void encode_navigation(std::int64_t utime, std::int64_t sequence, const NavigationState<double>& state,
+                       std::string& out) {
+  out.clear();
+  append_unsigned(out, kNavigationFingerprint);
+  append_i64(out, utime);
+  append_i64(out, sequence);
+  for (const double value : {state.latitude, state.longitude, state.height}) append_double(out, value);
+  for (int i = 0; i < 3; ++i) append_double(out, state.velocity(i));
+  const Quaternion<double>& q = state.attitude;
+  for (const double value : {q.w(), q.x(), q.y(), q.z()}) append_double(out, value);
+}
+
+std::int64_t decode_index(const std::string& path, const LcmEvent& event) {
+  constexpr std::size_t kIndexSize = 28;
+  if (event.data.size() != kIndexSize || load_u64(event.data.data()) != kIndexFingerprint)
+    throw input_error_at_byte(path, event.byte, "channel " + std::string(event.channel), "is not of type index_t");
+  return static_cast<std::int64_t>(load_u64(event.data.data() + 8));
+}
+
 }  // namespace trunnion::io

@@ -8,11 +8,14 @@
 #include <lcm/lcm-cpp.hpp>
 #include <vector>
 
+#include "matchers/refuses.hpp"
 #include "matchers/temporary_folder.hpp"
 #include "trunnion/io/lcm_recording.hpp"
 #include "trunnion_lcm/encoder_t.hpp"
 #include "trunnion_lcm/imu_batch_t.hpp"
 #include "trunnion_lcm/imu_t.hpp"
+#include "trunnion_lcm/index_t.hpp"
+#include "trunnion_lcm/navigation_t.hpp"
 
 namespace trunnion::io {
 namespace {
@@ -21,6 +24,38 @@ TEST(LcmPeer, TheFingerprintsAreThoseOfTheGeneratedTypes) {
   EXPECT_EQ(static_cast<std::uint64_t>(trunnion_lcm::imu_t::getHash()), kImuFingerprint);
   EXPECT_EQ(static_cast<std::uint64_t>(trunnion_lcm::encoder_t::getHash()), kEncoderFingerprint);
   EXPECT_EQ(static_cast<std::uint64_t>(trunnion_lcm::imu_batch_t::getHash()), kImuBatchFingerprint);
+  EXPECT_EQ(static_cast<std::uint64_t>(trunnion_lcm::index_t::getHash()), kIndexFingerprint);
+  EXPECT_EQ(static_cast<std::uint64_t>(trunnion_lcm::navigation_t::getHash()), kNavigationFingerprint);
+}
+
+TEST(LcmPeer, ReadsOurNavigationAndWeItsIndex) {
+  NavigationState<double> state;
+  state.latitude = 0.7;
+  state.height = 120.0;
+  state.velocity = Vec3<double>(1.0, 2.0, 3.0);
+  state.attitude = Quaternion<double>(0.5, -0.5, 0.5, -0.5);
+  std::string message;
+  encode_navigation(42, 7, state, message);
+  trunnion_lcm::navigation_t navigation;
+  ASSERT_EQ(navigation.decode(message.data(), 0, static_cast<int>(message.size())), static_cast<int>(message.size()));
+  EXPECT_EQ(navigation.utime, 42);
+  EXPECT_EQ(navigation.latitude, 0.7);
+  EXPECT_EQ(navigation.height, 120.0);
+  EXPECT_EQ(navigation.velocity[2], 3.0);
+  EXPECT_EQ(navigation.attitude[3], -0.5);
+
+  trunnion_lcm::index_t index;
+  index.utime = 1234567;
+  index.sequence = 1;
+  index.turns = 9;
+  std::string pulse(static_cast<std::size_t>(index.getEncodedSize()), '\0');
+  ASSERT_EQ(index.encode(pulse.data(), 0, static_cast<int>(pulse.size())), static_cast<int>(pulse.size()));
+  LcmEvent event;
+  event.channel = "INDEX";
+  event.data = pulse;
+  EXPECT_EQ(decode_index("a.lcm", event), 1234567);
+  pulse[0] = 'x';
+  EXPECT_REFUSES(ExitCode::kInput, "is not of type index_t", decode_index("a.lcm", event));
 }
 
 TEST(LcmPeer, ReadsWhatWeWrite) {

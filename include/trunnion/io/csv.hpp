@@ -9,8 +9,10 @@
 
 #pragma once
 
+#include <functional>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "trunnion/io/digest.hpp"
 #include "trunnion/io/sensor_sheet.hpp"
@@ -43,6 +45,13 @@ void read_split_csv(const std::string& gyro_path, const std::string& accel_path,
 
 /// Rows of t, azimuth and pitch into @p sink.
 void read_encoder_csv(const std::string& path, const ColumnMap& columns, SampleSink& sink, std::string& digest);
+
+/// Any columns by their header names with the unit in them: "t", "angle", "lat", "lon" (_rad, _deg), "h" (_m), ... in
+/// SI.
+/// @param row called with the values of each row, in the order of @p quantities
+/// @throws Error (input) naming file, line and column
+void read_columns_csv(const std::string& path, const std::vector<std::string>& quantities,
+                      const std::function<void(const double*)>& row, std::string& digest);
 
 /// Writes samples as CSV with the header t_s,gyro_x_rad_s,...,accel_z_m_s2.
 std::string imu_csv_header();

@@ -15,6 +15,7 @@
 #include "trunnion/io/digest.hpp"
 #include "trunnion/io/lcm_log.hpp"
 #include "trunnion/positions/sample_sink.hpp"
+#include "trunnion/strapdown/navigator.hpp"
 
 namespace trunnion::io {
 
@@ -22,6 +23,8 @@ namespace trunnion::io {
 inline constexpr std::uint64_t kImuFingerprint = 0x12aff17a21db298cULL;
 inline constexpr std::uint64_t kEncoderFingerprint = 0x0cb51f0098d46dacULL;
 inline constexpr std::uint64_t kImuBatchFingerprint = 0x42742e60ae44bd0cULL;
+inline constexpr std::uint64_t kIndexFingerprint = 0x724d29f1847a9b61ULL;
+inline constexpr std::uint64_t kNavigationFingerprint = 0x95dc36850fa1a09cULL;
 
 struct LcmChannels {
   std::string imu = "IMU";
@@ -83,5 +86,10 @@ void replace_samples(const std::vector<InertialSample<double>>& samples, std::st
 /// Encodes one message of type imu_t, or encoder_t with two axes, into @p out (cleared first).
 void encode_imu(std::int64_t utime, std::int64_t sequence, const InertialSample<double>& sample, std::string& out);
 void encode_encoder(std::int64_t utime, std::int64_t sequence, double azimuth, double pitch, std::string& out);
+/// Encodes one message of type navigation_t.
+void encode_navigation(std::int64_t utime, std::int64_t sequence, const NavigationState<double>& state,
+                       std::string& out);
+/// The stamp of an index_t message [us]. @throws Error (input) when it is none
+std::int64_t decode_index(const std::string& path, const LcmEvent& event);
 
 }  // namespace trunnion::io

@@ -38,6 +38,6 @@ std::string shared_file(const std::string& name) {
   return (std::filesystem::path(TRUNNION_SOURCE_SHARE) / name).string();
 }
 
-std::string tool_name() { return "imu_calibrate " TRUNNION_VERSION; }
+std::string tool_name() { return TRUNNION_TOOL " " TRUNNION_VERSION; }
 
 }  // namespace trunnion::app

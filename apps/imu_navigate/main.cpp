@@ -1,0 +1,276 @@
+// SPDX-FileCopyrightText: 2026 the trunnion authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "../terminal.hpp"
+#include "output.hpp"
+#include "trunnion/core/error.hpp"
+#include "trunnion/core/units.hpp"
+#include "trunnion/io/sensor_sheet.hpp"
+#include "trunnion/io/whole_file.hpp"
+#include "truth.hpp"
+
+namespace trunnion::app {
+namespace {
+
+struct Options {
+  RecordingSource source;
+  Modulation modulation = Modulation::kNone;
+  Align align = Align::kLevel;
+  double align_time = 10.0;
+  double latitude = 0.0;  // deg
+  double longitude = 0.0;
+  double height = 0.0;
+  double heading = 0.0;
+  std::vector<double> lever_arm = {0.0, 0.0, 0.0};
+  std::string sheet;
+  std::string algorithm = "previous";
+  double output_hz = 10.0;
+  double delay = 0.0;
+  double axial_range = 0.0;  // deg/s
+  double wheel_radius = 0.0;
+  AxleSide wheel_axle = AxleSide::kLeft;
+  std::string truth;
+  double truth_offset = 0.0;
+  double truth_heading = 0.0;
+  std::string output, log, kml, plots, summary;
+  std::string format = "text";
+};
+
+nlohmann::ordered_json summary_of(const Options& o, const Recording& recording, const BodyMotionSeries& motion,
+                                  const Track& track, const std::optional<Comparison>& against) {
+  const Epoch& end = track.epoch.back();
+  nlohmann::ordered_json tree = {
+      {"schema", "trunnion/navigate/1"},
+      {"tool", tool_name()},
+      {"input", o.source.log},
+      {"samples", recording.sample.size()},
+      {"period_s", recording.period},
+      {"duplicates", recording.duplicates},
+      {"stray_stamps", recording.strays},
+      {"filled", recording.filled},
+      {"damaged_records", recording.damaged},
+      {"turns", motion.turns},
+      {"missed_pulses", motion.missed_pulses},
+      {"saturated_turns", motion.saturated_turns},
+      {"start", {{"t_s", track.epoch.front().t}, {"heading_deg", track.heading_at_start / kRadPerDeg}}},
+      {"end",
+       {{"t_s", end.t},
+        {"lat_deg", end.state.latitude / kRadPerDeg},
+        {"lon_deg", end.state.longitude / kRadPerDeg},
+        {"h_m", end.state.height},
+        {"speed_m_s", end.state.velocity.norm()},
+        {"heading_deg", euler_angles(end.state.attitude).z() / kRadPerDeg}}}};
+  if (track.heading_sigma > 0.0) tree["start"]["heading_sigma_deg"] = track.heading_sigma / kRadPerDeg;
+  if (o.modulation == Modulation::kWheel)
+    tree["wheel"] = {{"distance_m", track.distance}, {"axle_scale", track.axle_scale}};
+  if (against) {
+    tree["truth"] = {{"distance_m", against->distance},
+                     {"largest_horizontal_m", against->largest_horizontal},
+                     {"largest_horizontal_percent", 100.0 * against->largest_horizontal / against->distance},
+                     {"end_horizontal_m", against->end_horizontal},
+                     {"largest_vertical_m", against->largest_vertical},
+                     {"heading_rms_deg", against->heading_rms / kRadPerDeg},
+                     {"heading_end_deg", against->heading_end / kRadPerDeg}};
+  }
+  tree["warnings"] = recording.warnings;
+  for (const std::string& warning : track.warnings) tree["warnings"].push_back(warning);
+  return tree;
+}
+
+void print(const nlohmann::ordered_json& tree, const std::string& indent) {
+  for (const auto& [key, value] : tree.items()) {
+    if (value.is_object()) {
+      std::printf("%s%s\n", indent.c_str(), key.c_str());
+      print(value, indent + "  ");
+    } else if (value.is_array()) {
+      for (const auto& item : value)
+        std::printf("%s%s: %s\n", indent.c_str(), key.c_str(), item.get<std::string>().c_str());
+    } else if (value.is_number_float()) {
+      std::printf("%s%-26s %s\n", indent.c_str(), key.c_str(), figure(value.get<double>(), 10).c_str());
+    } else {
+      std::printf("%s%-26s %s\n", indent.c_str(), key.c_str(),
+                  value.is_string() ? value.get<std::string>().c_str() : value.dump().c_str());
+    }
+  }
+}
+
+void keep_inputs(const Options& o) {
+  for (const std::string& out : {o.output, o.log, o.kml, o.summary}) {
+    for (const std::string& in : {o.source.log, o.source.axis, o.source.calibration, o.truth, o.sheet}) {
+      std::error_code error;
+      if (!out.empty() && !in.empty() && std::filesystem::equivalent(out, in, error) && !error)
+        throw Error(ExitCode::kUsage, out + ": would overwrite an input");
+    }
+  }
+}
+
+void run(Options o) {
+  keep_inputs(o);
+  if (o.modulation == Modulation::kWheel && !(o.wheel_radius > 0.0))
+    throw Error(ExitCode::kUsage, "--modulation wheel needs --wheel-radius-m");
+  if (!o.plots.empty() && o.output.empty()) throw Error(ExitCode::kUsage, "--plot draws the table: give --output too");
+  std::optional<Truth> truth;
+  if (!o.truth.empty()) truth.emplace(o.truth, o.truth_offset);
+  Start start;
+  start.latitude = truth ? truth->latitude() : o.latitude * kRadPerDeg;
+  start.longitude = truth ? truth->longitude() : o.longitude * kRadPerDeg;
+  start.height = truth ? truth->height() : o.height;
+  start.heading = o.heading * kRadPerDeg;
+  start.align = o.align;
+  start.align_time = o.align_time;
+  start.lever_arm = Vec3<double>(o.lever_arm[0], o.lever_arm[1], o.lever_arm[2]);
+  if (!o.sheet.empty()) {
+    const io::SensorSheet sheet = io::read_sensor_sheet(o.sheet);
+    start.noise = sheet.noise;
+    start.has_noise = sheet.has_noise;
+    if (o.axial_range == 0.0) o.axial_range = sheet.gyro_range / kRadPerDeg;
+  }
+  o.source.needs_angle = o.modulation == Modulation::kEncoder;
+  o.source.needs_pulses = o.modulation == Modulation::kIndex;
+  const Recording recording = read_recording(o.source);
+  const BodyMotionSeries motion = body_motion(recording, o.modulation, o.axial_range * kRadPerDeg, o.delay);
+  Track track =
+      o.modulation == Modulation::kWheel
+          ? reckon(motion, start, {o.wheel_radius, o.wheel_axle, o.axial_range * kRadPerDeg, 0.01}, o.output_hz)
+          : navigate(motion, start, o.algorithm, o.output_hz);
+  std::optional<Comparison> against;
+  if (truth) {
+    if (o.truth_heading > 0.0) turn_track(track, truth->heading_offset(track, o.truth_heading));
+    against = truth->compare(track);
+  }
+  if (!o.output.empty()) write_csv(o.output, track);
+  if (!o.log.empty()) write_log(o.log, track);
+  if (!o.kml.empty()) write_kml(o.kml, track);
+  if (!o.plots.empty()) write_plots(o.plots, o.output, o.truth);
+  const nlohmann::ordered_json tree = summary_of(o, recording, motion, track, against);
+  const std::string json = tree.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  if (!o.summary.empty()) io::write_whole(o.summary, json);
+  for (const auto& warning : tree["warnings"])
+    std::fprintf(stderr, "imu_navigate: warning: %s\n", warning.get<std::string>().c_str());
+  if (o.format == "json")
+    std::fputs(json.c_str(), stdout);
+  else
+    print(tree, "");
+}
+
+void add_options(CLI::App& app, Options& o) {
+  app.add_option("log", o.source.log,
+                 "LCM log, or CSV with the header t_s,gyro_x_rad_s,...,accel_z_m_s2 (units by name)")
+      ->required();
+  app.add_option("--channel", o.source.channel, "IMU channel of a log")->default_val("IMU");
+  app.add_flag("--increments", o.source.increments, "The values are increments: rad and m/s a sample");
+  app.add_option("--calibration", o.source.calibration, "Calibration file to correct the samples with");
+  app.add_option("--sheet", o.sheet, "Sensor sheet: noise and range");
+  app.add_option("--longest-gap-s", o.source.longest_gap, "Longer gaps are refused, shorter ones bridged")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 60.0));
+
+  app.add_option("--latitude-deg", o.latitude, "Of the start; default the truth's")->check(CLI::Range(-90.0, 90.0));
+  app.add_option("--longitude-deg", o.longitude, "Of the start")->check(CLI::Range(-360.0, 360.0));
+  app.add_option("--height-m", o.height, "Of the start, above the ellipsoid")->check(CLI::Range(-1e4, 1e6));
+  app.add_option("--heading-deg", o.heading, "Of the start, clockwise from north")->check(CLI::Range(-360.0, 360.0));
+  const std::map<std::string, Align> aligns = {{"none", Align::kNone},
+                                               {"level", Align::kLevel},
+                                               {"compass", Align::kCompass},
+                                               {"fine", Align::kFine},
+                                               {"swinging", Align::kSwinging}};
+  app.add_option("--align", o.align,
+                 "none: level, heading as given; level: tilt and gyro bias at rest, heading as given; compass: heading "
+                 "from the Earth's rate; fine: a filter after that; swinging: on a base that swings")
+      ->transform(CLI::CheckedTransformer(aligns, CLI::ignore_case))
+      ->default_str("level");
+  app.add_option("--align-s", o.align_time, "Seconds of alignment at the start")
+      ->capture_default_str()
+      ->check(CLI::Range(0.1, 86400.0));
+  app.add_option("--lever-arm-m", o.lever_arm,
+                 "Of --align fine: from the point at rest to the unit, in the unit's axes")
+      ->expected(3);
+  app.add_option("--algorithm", o.algorithm, "Coning and sculling: previous, 2, 3, 4 samples, exact4, exact6, exact8")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"previous", "2", "3", "4", "exact4", "exact6", "exact8"}));
+
+  const std::map<std::string, Modulation> modulations = {{"none", Modulation::kNone},
+                                                         {"index", Modulation::kIndex},
+                                                         {"encoder", Modulation::kEncoder},
+                                                         {"wheel", Modulation::kWheel}};
+  app.add_option("--modulation", o.modulation,
+                 "The unit turns about its z: with an index pulse, with an encoder, or on a wheel")
+      ->transform(CLI::CheckedTransformer(modulations, CLI::ignore_case))
+      ->default_str("none");
+  app.add_option("--axis", o.source.axis,
+                 "CSV of the axis: t_s,angle_rad of an encoder, t_s of the pulses; default the log's ENCODER (first "
+                 "angle) or INDEX");
+  app.add_option("--delay-s", o.delay, "Of the unit against the encoder")->check(CLI::Range(-1.0, 1.0));
+  app.add_option("--axial-range-deg-per-s", o.axial_range,
+                 "Where the gyro about the axis saturates; default the sheet's")
+      ->check(CLI::Range(0.0, 1e5));
+  app.add_option("--wheel-radius-m", o.wheel_radius, "Rolling radius")->check(CLI::Range(0.01, 10.0));
+  const std::map<std::string, AxleSide> sides = {{"left", AxleSide::kLeft}, {"right", AxleSide::kRight}};
+  app.add_option("--wheel-axle", o.wheel_axle, "Where the unit's z points: left or right of the vehicle")
+      ->transform(CLI::CheckedTransformer(sides, CLI::ignore_case))
+      ->default_str("left");
+
+  app.add_option("--truth", o.truth, "CSV t_s,lat_deg,lon_deg,h_m to compare with, and to start from");
+  app.add_option("--truth-offset-s", o.truth_offset, "To add to the log's stamps to get the truth's");
+  app.add_option("--truth-heading-s", o.truth_heading,
+                 "Take the start heading from the truth's course over the first seconds of motion")
+      ->check(CLI::Range(0.0, 1e4));
+
+  app.add_option("-o,--output", o.output, "CSV of the track");
+  app.add_option("--output-hz", o.output_hz, "Rows a second")->capture_default_str()->check(CLI::Range(1e-3, 1e5));
+  app.add_option("--log", o.log, "LCM log of navigation_t on channel NAVIGATION");
+  app.add_option("--kml", o.kml, "The track for a map");
+  app.add_option("--plot", o.plots, "Folder for pictures of the table (gnuplot)");
+  app.add_option("--json", o.summary, "Summary");
+  app.add_option("--format", o.format, "Of the summary on standard output: text or json")
+      ->check(CLI::IsMember({"text", "json"}));
+}
+
+ExitCode main_with(int argc, char** argv) {
+  CLI::App app("Navigates from the samples of an inertial unit: strapped down, on a turning platform, or on a wheel.",
+               "imu_navigate");
+  app.set_version_flag("--version", tool_name());
+  app.footer(
+      "Example:\n  imu_navigate drive.lcm --latitude-deg 48.1 --longitude-deg 11.6 --heading-deg 90 -o track.csv --kml "
+      "track.kml\n\n"
+      "Exit codes: 0 done; 2 usage; 3 input; 4 numerics; 70 defect.");
+  Options o;
+  add_options(app, o);
+  try {
+    app.parse(argc, argv);
+    run(o);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? ExitCode::kDone : ExitCode::kUsage;
+  } catch (const Error& e) {
+    std::fprintf(stderr, "imu_navigate: %s\n", e.what());
+    return e.code();
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "imu_navigate: a defect of ours, please report it: %s\n", e.what());
+    return ExitCode::kDefect;
+  }
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+    std::fprintf(stderr, "imu_navigate: cannot write the result to standard output\n");
+    return ExitCode::kInput;
+  }
+  return ExitCode::kDone;
+}
+
+}  // namespace
+}  // namespace trunnion::app
+
+int main(int argc, char** argv) {
+  try {
+    return static_cast<int>(trunnion::app::main_with(argc, argv));
+  } catch (...) {
+    return static_cast<int>(trunnion::ExitCode::kDefect);
+  }
+}

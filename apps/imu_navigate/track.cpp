@@ -1,0 +1,237 @@
+// SPDX-FileCopyrightText: 2026 the trunnion authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "track.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "../terminal.hpp"
+#include "trunnion/alignment/fine.hpp"
+#include "trunnion/alignment/swinging.hpp"
+#include "trunnion/core/error.hpp"
+#include "trunnion/core/units.hpp"
+
+namespace trunnion::app {
+namespace {
+
+/// What alignment found.
+struct Aligned {
+  Quaternion<double> q_nb = Quaternion<double>::Identity();
+  Vec3<double> gyro_bias = Vec3<double>::Zero();
+  double heading_sigma = 0.0;
+};
+
+NavigationState<double> place_of(const Start& start) {
+  NavigationState<double> state;
+  state.latitude = start.latitude;
+  state.longitude = start.longitude;
+  state.height = start.height;
+  return state;
+}
+
+Vec3<double> earth_rate_at(double latitude) {
+  return Vec3<double>(kEarthRate * std::cos(latitude), 0.0, -kEarthRate * std::sin(latitude));
+}
+
+/// Tilt from gravity, heading as given.
+Quaternion<double> level(const Vec3<double>& f, double heading) {
+  const double roll = std::atan2(-f.y(), -f.z());
+  const double pitch = std::atan2(f.x(), std::hypot(f.y(), f.z()));
+  return Quaternion<double>(Eigen::AngleAxisd(heading, Vec3<double>::UnitZ()) *
+                            Eigen::AngleAxisd(pitch, Vec3<double>::UnitY()) *
+                            Eigen::AngleAxisd(roll, Vec3<double>::UnitX()));
+}
+
+/// Mean over the rest. @throws Error (input) when half-second means of it wander as those of no base at rest
+InertialSample<double> rest_mean(const BodyMotionSeries& motion, std::size_t count) {
+  constexpr double kLargestRate = 0.5 * kRadPerDeg;  // rad/s
+  constexpr double kLargestForce = 0.15;             // m/s^2
+  InertialSample<double> mean;
+  for (std::size_t i = 0; i < count; ++i) {
+    mean.w += motion.mean[i].w / static_cast<double>(count);
+    mean.f += motion.mean[i].f / static_cast<double>(count);
+  }
+  const auto block = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(0.5 / motion.period)));
+  for (std::size_t from = 0; from + block <= count; from += block) {
+    InertialSample<double> off{-mean.w, -mean.f};
+    for (std::size_t i = from; i < from + block; ++i) {
+      off.w += motion.mean[i].w / static_cast<double>(block);
+      off.f += motion.mean[i].f / static_cast<double>(block);
+    }
+    if (off.w.norm() <= kLargestRate && off.f.norm() <= kLargestForce) continue;
+    throw Error(ExitCode::kInput, "alignment: the base moves: " + figure(off.w.norm() / kRadPerDeg, 3) + " deg/s and " +
+                                      figure(off.f.norm(), 3) + " m/s^2 off the mean at " +
+                                      figure(motion.stamp[from], 9) +
+                                      " s; align at rest, or say --align swinging or none");
+  }
+  return mean;
+}
+
+Aligned finely(const BodyMotionSeries& motion, const Start& start, std::size_t count, const Aligned& coarse) {
+  const UnitNoise& noise = start.noise;
+  const auto walk = [](const TriadNoise& n) { return n.wander * std::sqrt(2.0 / n.wander_correlation_time); };
+  NavigationState<double> state = place_of(start);
+  state.attitude = coarse.q_nb;
+  const double tilt = std::max(1e-4, 3.0 * noise.accel.wander / kStandardGravity);
+  FineAlignment<PreviousSample<double>> fine(
+      state, motion.period, std::max(1, static_cast<int>(std::lround(0.1 / motion.period))), start.lever_arm,
+      {noise.gyro.density, noise.accel.density, walk(noise.gyro), walk(noise.accel), 2e-3, tilt,
+       std::max(coarse.heading_sigma, 1e-3), 0.02, noise.gyro.wander, noise.accel.wander});
+  for (std::size_t i = 0; i < count; ++i) {
+    if (fine.add(increment_of(motion.mean[i], motion.period)) == Status::kMovingBase)
+      throw Error(ExitCode::kInput, "alignment: the base moves: " + figure(fine.innovation().norm(), 3) + " m/s at " +
+                                        figure(motion.stamp[i], 9) +
+                                        " s where a point at rest was told; is the lever arm right?");
+  }
+  return {fine.navigator().state().attitude, fine.gyro_bias(), std::sqrt(fine.covariance()(2, 2))};
+}
+
+Aligned swinging(const BodyMotionSeries& motion, const Start& start, std::size_t count) {
+  SwingingAlignment<double> alignment(start.latitude, static_cast<double>(count) * motion.period, motion.period);
+  for (std::size_t i = 0; i < count; ++i) (void)alignment.add(increment_of(motion.mean[i], motion.period));
+  const auto attitude = alignment.attitude();
+  if (!attitude.ok()) throw Error(ExitCode::kNumerics, "alignment: heading is not observable: too short, or at a pole");
+  return {attitude.value(), Vec3<double>::Zero(), 0.0};
+}
+
+Aligned align(const BodyMotionSeries& motion, const Start& start, std::size_t count) {
+  Aligned aligned;
+  if (start.align == Align::kNone) {
+    aligned.q_nb = level(Vec3<double>(0.0, 0.0, -1.0), start.heading);
+    return aligned;
+  }
+  if (start.align == Align::kSwinging) {
+    aligned = swinging(motion, start, count);
+    return aligned;
+  }
+  const InertialSample<double> mean = rest_mean(motion, count);
+  if (start.align == Align::kLevel) {
+    aligned.q_nb = level(mean.f, start.heading);
+    aligned.gyro_bias = mean.w - aligned.q_nb.conjugate() * earth_rate_at(start.latitude);
+    return aligned;
+  }
+  if (!start.has_noise)
+    throw Error(ExitCode::kUsage, "--align compass and fine need --sheet: the noise says what the heading is worth");
+  const double time = static_cast<double>(count) * motion.period;
+  const auto sigma = [time](const TriadNoise& n) { return std::hypot(n.density / std::sqrt(time), n.wander); };
+  const auto found = coarse_align<double>(mean, {sigma(start.noise.gyro), sigma(start.noise.accel)}, start.latitude);
+  if (!found.ok())
+    throw Error(ExitCode::kNumerics,
+                "alignment: heading is not observable: these gyros hide the Earth's rate; give it, with --align level");
+  aligned.q_nb = found.value().q_nb;
+  aligned.heading_sigma = std::sqrt(found.value().covariance(2, 2));
+  return start.align == Align::kFine ? finely(motion, start, count, aligned) : aligned;
+}
+
+template <class Algorithm>
+void fly(const BodyMotionSeries& motion, const NavigationState<double>& state, const Vec3<double>& gyro_bias,
+         std::size_t first, double output_hz, Track& track) {
+  Navigator<Algorithm> navigator(state, motion.period);
+  const auto every = static_cast<std::size_t>(std::max(1L, std::lround(1.0 / (output_hz * motion.period))));
+  ProgressLine progress;
+  std::size_t since = 0;
+  for (std::size_t i = first; i < motion.mean.size(); ++i) {
+    InertialSample<double> mean = motion.mean[i];
+    mean.w -= gyro_bias;
+    if (navigator.add(increment_of(mean, motion.period)) != Status::kOk)
+      throw Error(ExitCode::kInput, "more than a radian in one sample at " + figure(motion.stamp[i], 9) +
+                                        " s: is the unit of the rates right?");
+    ++since;
+    if (!navigator.updated() || (since < every && i + 1 < motion.mean.size())) continue;
+    since = 0;
+    track.epoch.push_back({motion.stamp[i], navigator.state()});
+    progress.show("navigating " + figure(100.0 * static_cast<double>(i) / static_cast<double>(motion.mean.size()), 3) +
+                  " %");
+  }
+}
+
+}  // namespace
+
+Vec3<double> euler_angles(const Quaternion<double>& q_nb) {
+  const Mat3<double> C = q_nb.toRotationMatrix();
+  return Vec3<double>(std::atan2(C(2, 1), C(2, 2)), -std::asin(std::clamp(C(2, 0), -1.0, 1.0)),
+                      std::atan2(C(1, 0), C(0, 0)));
+}
+
+Track navigate(const BodyMotionSeries& motion, const Start& start, const std::string& algorithm, double output_hz) {
+  const std::size_t count =
+      start.align == Align::kNone ? 0 : static_cast<std::size_t>(std::lround(start.align_time / motion.period));
+  if (count + 10 > motion.mean.size()) throw Error(ExitCode::kInput, "the recording is shorter than its alignment");
+  const Aligned aligned = align(motion, start, count);
+  Track track;
+  track.heading_at_start = euler_angles(aligned.q_nb).z();
+  track.heading_sigma = aligned.heading_sigma;
+  NavigationState<double> state = place_of(start);
+  state.attitude = aligned.q_nb;
+  track.epoch.push_back({motion.stamp[count] - motion.period, state});
+  const auto run = [&](auto kind) {
+    fly<typename decltype(kind)::Algorithm>(motion, state, aligned.gyro_bias, count, output_hz, track);
+  };
+  struct Previous {
+    using Algorithm = PreviousSample<double>;
+  };
+  struct Two {
+    using Algorithm = MultiSample<double, 2>;
+  };
+  struct Three {
+    using Algorithm = MultiSample<double, 3>;
+  };
+  struct Four {
+    using Algorithm = MultiSample<double, 4>;
+  };
+  struct Exact4 {
+    using Algorithm = ExactSamples<double, 4>;
+  };
+  struct Exact6 {
+    using Algorithm = ExactSamples<double, 6>;
+  };
+  struct Exact8 {
+    using Algorithm = ExactSamples<double, 8>;
+  };
+  if (algorithm == "2")
+    run(Two{});
+  else if (algorithm == "3")
+    run(Three{});
+  else if (algorithm == "4")
+    run(Four{});
+  else if (algorithm == "exact4")
+    run(Exact4{});
+  else if (algorithm == "exact6")
+    run(Exact6{});
+  else if (algorithm == "exact8")
+    run(Exact8{});
+  else
+    run(Previous{});
+  return track;
+}
+
+Track reckon(const BodyMotionSeries& motion, const Start& start, const Wheel<double>& wheel, double output_hz) {
+  WheelDeadReckoning<double> reckoning(wheel, start.heading, motion.period);
+  const double sl = std::sin(start.latitude);
+  const Ellipsoid<double> ellipsoid(sl * sl);
+  const auto every = static_cast<std::size_t>(std::max(1L, std::lround(1.0 / (output_hz * motion.period))));
+  Track track;
+  track.heading_at_start = start.heading;
+  for (std::size_t i = 0; i < motion.mean.size(); ++i) {
+    (void)reckoning.add(motion.mean[i]);
+    if (reckoning.state() == WheelState::kSaturated) track.saturated_time += motion.period;
+    if (i % every != 0 && i + 1 < motion.mean.size()) continue;
+    NavigationState<double> state = place_of(start);
+    state.latitude += reckoning.north() / (ellipsoid.north_radius + start.height);
+    state.longitude += reckoning.east() / ((ellipsoid.east_radius + start.height) * std::cos(start.latitude));
+    const double heading = reckoning.heading();
+    state.velocity = reckoning.speed() * Vec3<double>(std::cos(heading), std::sin(heading), 0.0);
+    state.attitude = Quaternion<double>(Eigen::AngleAxisd(heading, Vec3<double>::UnitZ()));
+    track.epoch.push_back({motion.stamp[i], state});
+  }
+  if (reckoning.state() == WheelState::kWaiting)
+    throw Error(ExitCode::kInput, "the wheel is never at rest for a second: its gyros' biases cannot be read");
+  track.distance = reckoning.distance();
+  track.axle_scale = reckoning.axle_scale();
+  if (track.saturated_time > 0.0)
+    track.warnings.push_back("the axle gyro was at its range for " + figure(track.saturated_time, 3) + " s");
+  return track;
+}
+
+}  // namespace trunnion::app
