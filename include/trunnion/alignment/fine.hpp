@@ -2,13 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// Fine alignment: a navigator whose errors a Kalman filter takes out, because a point of the base is known to stand
-/// still.
+/// still, or to move at a velocity that somebody else measures.
 ///
-///   z = v - C_nb (w_nb_b x l) = dv + phi x V + C_nb (l x b_g) + noise,   V = C_nb (w_nb_b x l)            ... (1)
+///   z = v - v_0 - C_nb (w_nb_b x l) = dv + phi x V + C_nb (l x b_g) + noise,   V = C_nb (w_nb_b x l)            ...
+///   (1)
 ///
-/// l: from the point at rest to the unit [b]; states and dynamics: strapdown/error_dynamics.hpp. What is found goes
-/// into the navigator at once, the biases into its inputs. Innovations that stay beyond their sigmas are a base that
-/// moves.
+/// v_0: of the point, none unless told; l: from it to the unit [b]; states and dynamics: strapdown/error_dynamics.hpp.
+/// What is found goes into the navigator at once, the biases into its inputs. Innovations that stay beyond their sigmas
+/// are a base that moves.
 ///
 /// On a base that does not turn, the level gyro bias across north and the heading are one (sigma of b_E / (W cos L)),
 /// and so are tilt and accelerometer bias: the covariance says so. On a platform that turns, feed the *unit's*
@@ -54,6 +55,9 @@ class FineAlignment {
         noise.first_accel_bias, noise.first_accel_bias, noise.first_accel_bias;
     P_ = first.cwiseAbs2().asDiagonal();
   }
+
+  /// The point of the base moves: alignment in motion. @param velocity of it at the next samples [m/s, NED]
+  void move(const Vec3<T>& velocity) { base_velocity_ = velocity; }
 
   /// Takes the next sample. @return kOutOfRange, and nothing changed, for one that is not finite or turns by more than
   /// a radian; kMovingBase while the base moves
@@ -121,7 +125,7 @@ class FineAlignment {
     H.template block<3, 3>(0, kPhi) = -skew<T>(swing);
     H.template block<3, 3>(0, kVelocityError).setIdentity();
     H.template block<3, 3>(0, kGyroBias) = C_nb * skew<T>(lever_arm_);
-    innovation_ = state.velocity - swing;
+    innovation_ = state.velocity - base_velocity_ - swing;
     const Eigen::Matrix<T, 15, 3> PHt = P_ * H.transpose();
     Mat3<T> S = H * PHt;
     S.diagonal().array() += noise_.velocity * noise_.velocity;
@@ -147,6 +151,7 @@ class FineAlignment {
   Increment<T> sum_;
   Vec3<T> last_angle_ = Vec3<T>::Zero();
   Vec3<T> end_rate_ = Vec3<T>::Zero();
+  Vec3<T> base_velocity_ = Vec3<T>::Zero();
   Vec3<T> innovation_ = Vec3<T>::Zero();
   T strangeness_ = T(1);
   int count_ = 0;
