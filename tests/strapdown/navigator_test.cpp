@@ -105,7 +105,7 @@ class Recording {
 };
 
 void print(const char* what, const Error& error) {
-  std::printf("[ FIGURE   ] %s: %.3g m horizontal, %.3g m vertical\n", what, error.horizontal, error.up);
+  std::printf("[ FIGURE   ] %s: %.4g m horizontal, %.4g m vertical\n", what, error.horizontal, error.up);
 }
 
 /// One sample and the one before, with half of theta x v for the whole rotation term: what is usual.

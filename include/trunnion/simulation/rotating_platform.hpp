@@ -6,7 +6,7 @@
 ///   C_bp = C_b0 Rn(phi),   w_p = C_bp^T w_b + phi' n,   f_p = C_bp^T f_b + w_p' x r + w_p x (w_p x r)       ... (1)
 ///
 /// n: the axis, fixed in both frames; r: the unit's place from the axis [p]. Platforms stand on platforms. Shares
-/// nothing with the demodulation: C_bp is a matrix product, w_p' a difference of w_p over 2e-4 s (1e-8 of it at 4 Hz).
+/// nothing with the demodulation: C_bp is a matrix product, w_p' a difference of w_p over 2e-5 s (1e-8 of it at 4 Hz).
 
 #pragma once
 
@@ -32,7 +32,7 @@ class RotatingPlatform {
   InertialSample<T> operator()(T t) const {
     InertialSample<T> unit = at_axis(t);
     if (lever_arm_.isZero()) return unit;
-    constexpr T kStep = 1e-4L;
+    constexpr T kStep = 1e-5L;
     const Vec3<T> turning = (at_axis(t + kStep).w - at_axis(t - kStep).w) / (T(2) * kStep);
     unit.f += turning.cross(lever_arm_) + unit.w.cross(unit.w.cross(lever_arm_));
     return unit;

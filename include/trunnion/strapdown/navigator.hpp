@@ -82,7 +82,7 @@ class Navigator {
   /// @param period of one sample [s], positive
   template <class U>
   Navigator(const NavigationState<U>& start, const T& period)
-      : update_(T(kSamples) * period), earth_turn_(T(kEarthRate) * update_) {
+      : update_(T(kSamples) * period), earth_turn_(T(kEarthRate) * update_), long_(update_ > T(kLongUpdate)) {
     using std::cos;
     using std::fma;
     using std::sin;
@@ -112,11 +112,16 @@ class Navigator {
   Status add(const Increment<T>& sample) {
     const T sum = sample.angle.sum() + sample.velocity.sum();
     if (!(sum - sum == T(0)) || !(sample.angle.squaredNorm() <= T(1))) return Status::kOutOfRange;
-    sample_[count_++] = sample;
-    updated_ = count_ == sample_.size();
-    if (updated_) {
-      count_ = 0;
-      advance(algorithm_(sample_));
+    if constexpr (kSamples == 1) {
+      advance(algorithm_({sample}));
+      updated_ = true;
+    } else {
+      sample_[count_++] = sample;
+      updated_ = count_ == sample_.size();
+      if (updated_) {
+        count_ = 0;
+        advance(algorithm_(sample_));
+      }
     }
     return Status::kOk;
   }
@@ -215,6 +220,8 @@ class Navigator {
 
   static constexpr bool kNarrow = std::numeric_limits<T>::digits < 30;  // float: 1e-7 of gravity is 60 m in an hour
 
+  static constexpr double kLongUpdate = 0.03;  // s: shorter, the second order is below 4e-12 m/s^2
+
   void advance(const BodyMotion<T>& motion) {
     const T dt = update_;
     const Quad q_nb = q_nb_.sum;
@@ -259,6 +266,14 @@ class Navigator {
     velocity_.add(dv);
     q_en_.add(product(q_en, small_turn(dt * w_en_)));  // a millionth of a turn: its length is kept by the sum
 
+    // of long updates the second order too, for a force that is even in n; float would not see it. Here and anew, since
+    // the processor's registers are full above: 12 instructions an update
+    if constexpr (!kNarrow) {
+      if (long_) {
+        const Triple again = rotate(q_nb.w, q_nb.v, strapdown_detail::triple(motion.velocity));
+        velocity_.add(T(1.0 / 12.0) * cross(cross(again, zeta), zeta));
+      }
+    }
     const Quad step = product(q_nb, {motion.rotation_w, strapdown_detail::triple(motion.rotation_v)});
     const T stretch = T(0.5) - T(0.5) * dot(q_nb, q_nb);  // brings the length back to one
     Quad frame = small_turn(T(-1) * zeta);
@@ -281,6 +296,7 @@ class Navigator {
   Triple w_en_before_{};
   Triple dv_before_{};
   bool started_ = false;
+  bool long_;
 };
 
 }  // namespace trunnion
