@@ -3,13 +3,87 @@
 /// @file
 /// Rungs 0 and 1 without exceptions, RTTI or heap. malloc itself is watched: Eigen does not go through operator new.
 
+#include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 
 #include "trunnion/model.hpp"
 
+namespace trunnion {
+// every member, of every scalar
+template class RevolutionAverage<std::int16_t>;
+template class RevolutionAverage<std::int32_t>;
+#define TRUNNION_INSTANTIATE(T)                        \
+  template class RevolutionAverage<T>;                 \
+  template class IndexDemodulator<T>;                  \
+  template class Demodulator<T, 64>;                   \
+  template class SlowStates<T>;                        \
+  template class TurnErrors<T>;                        \
+  template class TwoPositionModulation<T>;             \
+  template class Gyrocompass<T>;                       \
+  template class SwingingAlignment<T>;                 \
+  template class FineAlignment<PreviousSample<T>>;     \
+  template class WheelDeadReckoning<T>;                \
+  template class Navigator<PreviousSample<T>>;         \
+  template class Navigator<MultiSample<T, 2>>;         \
+  template class Navigator<MultiSample<T, 3>>;         \
+  template class Navigator<MultiSample<T, 4>>;         \
+  template class Navigator<ExactSamples<T, 4>>;        \
+  template class Navigator<ExactSamples<T, 6>>;        \
+  template class Navigator<ExactSamples<T, 8>>;
+TRUNNION_INSTANTIATE(float)
+TRUNNION_INSTANTIATE(double)
+TRUNNION_INSTANTIATE(long double)
+}  // namespace trunnion
+
 namespace {
 long g_allocations = 0;
+
+/// Every hot path of modulation, alignment and dead reckoning. @return something that depends on all of it
+template <class T>
+T turn_and_align() {
+  using namespace trunnion;
+  const T h = T(0.01);
+  const TurnErrorNoise<T> noise = {T(1e-4), T(2e-4), T(1e-7), T(1e-7), T(1e-3), T(5e-4), T(3e-4), T(1e-2)};
+  TwoPositionModulation<T> platform(h, T(0), T(0), {T(2), T(5), T(1)}, noise, noise);
+  Demodulator<T, 256> encoder(T(0));
+  SlowStates<T> slow({T(1e-3), T(0.3), T(1e-6), T(0.5), T(0.01), T(0.035), T(1e-3)});
+  WheelDeadReckoning<T> wheel({T(0.3), AxleSide::kLeft, T(0), T(0.01)}, T(0), h);
+  NavigationState<T> place;
+  place.latitude = T(0.7);
+  FineAlignment<PreviousSample<T>> fine(place, h, 10, Vec3<T>::Zero(),
+                                        {T(1e-4), T(1e-3), T(0), T(0), T(0.01), T(0.01), T(0.1), T(0.1), T(1e-3), T(0.01)});
+  SwingingAlignment<T> swinging(T(0.7), T(10), h);
+  Gyrocompass<T> compass;
+  RevolutionAverage<std::int32_t> counts(2, 62832, 0);
+  FlipSample<T> sample;
+  for (int i = 0; i < 1500; ++i) {
+    const T angle = T(0.0314159265) * (T(i) + T(0.5));
+    const T c = T(std::cos(angle));
+    const T s = T(std::sin(angle));
+    sample.main = {Vec3<T>(T(0.01) * c, T(-0.01) * s, i < 200 ? T(0) : T(3.14159265)), Vec3<T>(T(9.8) * c, T(-9.8) * s, T(0))};
+    sample.auxiliary = sample.main;
+    sample.has_pulse = i % 200 == 0;
+    sample.flip = i > 1000 && i < 1050 ? FlipSwitch::kBetween : FlipSwitch::kFirst;
+    (void)platform.add(sample);
+    (void)encoder.add(sample.main, angle, h);
+    slow.add(sample.main.w.template head<2>(), s, c, T(3.14159265), h);
+    (void)wheel.add(sample.main);
+    const Increment<T> at_rest{Vec3<T>::Zero(), Vec3<T>(T(0), T(0), T(-0.098))};
+    (void)fine.add(at_rest);
+    (void)swinging.add(at_rest);
+    (void)compass.add({Vec3<T>(T(5e-5), T(0), T(0)), Vec3<T>(T(0), T(0), T(-9.8))}, T(i));
+    if (sample.has_pulse)
+      (void)counts.add_with_pulse({1, 2, 400, 4, 5, 6}, 100);
+    else
+      counts.add({1, 2, 400, 4, 5, 6});
+  }
+  const auto turn = encoder.whole_turn();
+  return platform.interval().body.f.sum() + turn.value().f.sum() + slow.state().sum() + wheel.heading() +
+         fine.result().value().covariance.sum() + swinging.attitude().value().w() + compass.solve(T(1e-6)).value().heading +
+         T(counts.turn().turns);
+}
 }  // namespace
 
 extern "C" void* __libc_malloc(std::size_t);  // NOLINT(bugprone-reserved-identifier): glibc's own name
@@ -54,6 +128,9 @@ int main() {
     if (navigator.add(increment) != Status::kOk || exact.add(increment) != Status::kOk) return 3;
   }
   sum.f += navigator.state().velocity + exact.state().velocity;
+  sum.w.x() += turn_and_align<float>();
+  sum.w.y() += static_cast<float>(turn_and_align<double>());
+  sum.w.z() += static_cast<float>(turn_and_align<long double>());
   const TriadGeometry<float> parts = unit.gyro.geometry();
   const long used = g_allocations - before;
   std::printf("%ld allocations, sum %g\n", used, static_cast<double>(sum.w.sum() + sum.f.sum() + parts.scale.sum()));
