@@ -14,23 +14,23 @@ namespace trunnion {
 // every member, of every scalar
 template class RevolutionAverage<std::int16_t>;
 template class RevolutionAverage<std::int32_t>;
-#define TRUNNION_INSTANTIATE(T)                        \
-  template class RevolutionAverage<T>;                 \
-  template class IndexDemodulator<T>;                  \
-  template class Demodulator<T, 64>;                   \
-  template class SlowStates<T>;                        \
-  template class TurnErrors<T>;                        \
-  template class TwoPositionModulation<T>;             \
-  template class Gyrocompass<T>;                       \
-  template class SwingingAlignment<T>;                 \
-  template class FineAlignment<PreviousSample<T>>;     \
-  template class WheelDeadReckoning<T>;                \
-  template class Navigator<PreviousSample<T>>;         \
-  template class Navigator<MultiSample<T, 2>>;         \
-  template class Navigator<MultiSample<T, 3>>;         \
-  template class Navigator<MultiSample<T, 4>>;         \
-  template class Navigator<ExactSamples<T, 4>>;        \
-  template class Navigator<ExactSamples<T, 6>>;        \
+#define TRUNNION_INSTANTIATE(T)                    \
+  template class RevolutionAverage<T>;             \
+  template class IndexDemodulator<T>;              \
+  template class Demodulator<T, 64>;               \
+  template class SlowStates<T>;                    \
+  template class TurnErrors<T>;                    \
+  template class TwoPositionModulation<T>;         \
+  template class Gyrocompass<T>;                   \
+  template class SwingingAlignment<T>;             \
+  template class FineAlignment<PreviousSample<T>>; \
+  template class WheelDeadReckoning<T>;            \
+  template class Navigator<PreviousSample<T>>;     \
+  template class Navigator<MultiSample<T, 2>>;     \
+  template class Navigator<MultiSample<T, 3>>;     \
+  template class Navigator<MultiSample<T, 4>>;     \
+  template class Navigator<ExactSamples<T, 4>>;    \
+  template class Navigator<ExactSamples<T, 6>>;    \
   template class Navigator<ExactSamples<T, 8>>;
 TRUNNION_INSTANTIATE(float)
 TRUNNION_INSTANTIATE(double)
@@ -52,8 +52,9 @@ T turn_and_align() {
   WheelDeadReckoning<T> wheel({T(0.3), AxleSide::kLeft, T(0), T(0.01)}, T(0), h);
   NavigationState<T> place;
   place.latitude = T(0.7);
-  FineAlignment<PreviousSample<T>> fine(place, h, 10, Vec3<T>::Zero(),
-                                        {T(1e-4), T(1e-3), T(0), T(0), T(0.01), T(0.01), T(0.1), T(0.1), T(1e-3), T(0.01)});
+  FineAlignment<PreviousSample<T>> fine(
+      place, h, 10, Vec3<T>::Zero(),
+      {T(1e-4), T(1e-3), T(0), T(0), T(0.01), T(0.01), T(0.1), T(0.1), T(1e-3), T(0.01)});
   SwingingAlignment<T> swinging(T(0.7), T(10), h);
   Gyrocompass<T> compass;
   RevolutionAverage<std::int32_t> counts(2, 62832, 0);
@@ -62,7 +63,8 @@ T turn_and_align() {
     const T angle = T(0.0314159265) * (T(i) + T(0.5));
     const T c = T(std::cos(angle));
     const T s = T(std::sin(angle));
-    sample.main = {Vec3<T>(T(0.01) * c, T(-0.01) * s, i < 200 ? T(0) : T(3.14159265)), Vec3<T>(T(9.8) * c, T(-9.8) * s, T(0))};
+    sample.main = {Vec3<T>(T(0.01) * c, T(-0.01) * s, i < 200 ? T(0) : T(3.14159265)),
+                   Vec3<T>(T(9.8) * c, T(-9.8) * s, T(0))};
     sample.auxiliary = sample.main;
     sample.has_pulse = i % 200 == 0;
     sample.flip = i > 1000 && i < 1050 ? FlipSwitch::kBetween : FlipSwitch::kFirst;
@@ -81,8 +83,8 @@ T turn_and_align() {
   }
   const auto turn = encoder.whole_turn();
   return platform.interval().body.f.sum() + turn.value().f.sum() + slow.state().sum() + wheel.heading() +
-         fine.result().value().covariance.sum() + swinging.attitude().value().w() + compass.solve(T(1e-6)).value().heading +
-         T(counts.turn().turns);
+         fine.result().value().covariance.sum() + swinging.attitude().value().w() +
+         compass.solve(T(1e-6)).value().heading + T(counts.turn().turns);
 }
 }  // namespace
 

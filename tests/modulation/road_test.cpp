@@ -32,9 +32,9 @@ using simulation::TimeJet;
 using Wide = long double;
 using S = TimeJet<Wide>;
 
-constexpr double kPeriod = 0.01;        // s
-constexpr int kSamples = 29000;         // 290 s
-constexpr double kWheelRadius = 0.40;   // m: on a smaller one 50 km/h is beyond 2000 deg/s
+constexpr double kPeriod = 0.01;       // s
+constexpr int kSamples = 29000;        // 290 s
+constexpr double kWheelRadius = 0.40;  // m: on a smaller one 50 km/h is beyond 2000 deg/s
 constexpr double kDegPerH = kRadPerSPerDegPerH;
 constexpr double kMilliG = 1e-3 * kStandardGravity;
 constexpr int kSeeds = 10;
@@ -56,15 +56,20 @@ struct Road {
     const S slope = of(40.0 * kBend) * cos(of(kBend) * n);
     const Wide k = 1.0L / (1.0L + slope.value * slope.value);
     const S yaw = slope.chain(std::atan(slope.value), k, -2.0L * slope.value * k * k);
-    return {of(kLatitude) + of(1.0 / 6.38e6) * n, of(0.1) + of(40.0 / (6.39e6 * std::cos(kLatitude))) * sin(of(kBend) * n),
-            of(100.0), of(0.0), of(0.0), yaw};
+    return {of(kLatitude) + of(1.0 / 6.38e6) * n,
+            of(0.1) + of(40.0 / (6.39e6 * std::cos(kLatitude))) * sin(of(kBend) * n),
+            of(100.0),
+            of(0.0),
+            of(0.0),
+            yaw};
   }
   /// Along the road [m], by its speed.
   static std::vector<double> ways() {
     std::vector<double> way = {0.0};
     const PathTruth<Road> truth(Road{});
     for (int i = 0; i <= kSamples; ++i)
-      way.push_back(way.back() + kPeriod * static_cast<double>(truth.state(static_cast<Wide>(kPeriod) * (i + 0.5L)).velocity.norm()));
+      way.push_back(way.back() + kPeriod * static_cast<double>(
+                                               truth.state(static_cast<Wide>(kPeriod) * (i + 0.5L)).velocity.norm()));
     return way;
   }
 };
@@ -72,11 +77,14 @@ struct Road {
 /// MTi-1, as in the static test: noise, the paper's turn-on biases, and what a calibration leaves.
 class Unit {
  public:
-  explicit Unit(std::uint64_t seed, bool auxiliary = false) : white_(seed, auxiliary ? 2 : 1), scale_(auxiliary ? 1.5 : 1.0) {
+  explicit Unit(std::uint64_t seed, bool auxiliary = false)
+      : white_(seed, auxiliary ? 2 : 1), scale_(auxiliary ? 1.5 : 1.0) {
     const auto level = [](double flat) { return flat * flat / (2.0 * std::log(2.0)); };
     for (std::uint64_t i = 0; i < 3; ++i) {
-      flicker_.emplace_back(level((auxiliary ? 20.0 : 10.0) * kDegPerH), kPeriod, 300.0, seed, 20 + i + (auxiliary ? 9U : 0U));
-      flicker_.emplace_back(level((auxiliary ? 0.1 : 0.03) * kMilliG), kPeriod, 300.0, seed, 30 + i + (auxiliary ? 9U : 0U));
+      flicker_.emplace_back(level((auxiliary ? 20.0 : 10.0) * kDegPerH), kPeriod, 300.0, seed,
+                            20 + i + (auxiliary ? 9U : 0U));
+      flicker_.emplace_back(level((auxiliary ? 0.1 : 0.03) * kMilliG), kPeriod, 300.0, seed,
+                            30 + i + (auxiliary ? 9U : 0U));
     }
     simulation::Gaussian left(seed, auxiliary ? 4 : 3);
     bias_ = {Vec3<double>(196.0, -155.0, 67.0) * kDegPerH, Vec3<double>(-1.6, 1.2, -2.4) * kMilliG};
@@ -128,11 +136,13 @@ Course course_of(Mount mount, const simulation::AxisCourse& turning) {
   };
   const auto angle = [&](Wide t) {
     const auto at = static_cast<double>(t);
-    if (mount != Mount::kWheel) return S(static_cast<Wide>(turning.angle(at)), static_cast<Wide>(turning.rate(at)), 0.0L);
-    return S(static_cast<Wide>(rolled(at) / kWheelRadius), truth.state(t).velocity.norm() / static_cast<Wide>(kWheelRadius), 0.0L);
+    if (mount != Mount::kWheel)
+      return S(static_cast<Wide>(turning.angle(at)), static_cast<Wide>(turning.rate(at)), 0.0L);
+    return S(static_cast<Wide>(rolled(at) / kWheelRadius),
+             truth.state(t).velocity.norm() / static_cast<Wide>(kWheelRadius), 0.0L);
   };
-  const simulation::RotatingPlatform unit([&truth](Wide t) { return truth.sample(t); }, angle, axes_of(mount).cast<Wide>(),
-                                          Vec3<Wide>::UnitZ(), Vec3<Wide>::Zero());
+  const simulation::RotatingPlatform unit([&truth](Wide t) { return truth.sample(t); }, angle,
+                                          axes_of(mount).cast<Wide>(), Vec3<Wide>::UnitZ(), Vec3<Wide>::Zero());
   Course course;
   course.angle.push_back(static_cast<double>(angle(0.0L).value));
   for (int i = 0; i < kSamples; ++i) {
@@ -159,9 +169,11 @@ class Track {
     const auto true_state = truth_.state(static_cast<Wide>(t));
     const double metre = 6.38e6;
     const double north = (state.latitude - static_cast<double>(true_state.latitude)) * metre;
-    const double east = (state.longitude - static_cast<double>(true_state.longitude)) * metre * std::cos(Road::kLatitude);
+    const double east =
+        (state.longitude - static_cast<double>(true_state.longitude)) * metre * std::cos(Road::kLatitude);
     error_.largest = std::max(error_.largest, std::hypot(north, east));
-    const Vec3<double> phi = quaternion_log<double>((true_state.attitude.cast<double>() * state.attitude.conjugate()).normalized());
+    const Vec3<double> phi =
+        quaternion_log<double>((true_state.attitude.cast<double>() * state.attitude.conjugate()).normalized());
     error_.heading = std::abs(phi.z());
   }
   [[nodiscard]] const TrackError& error() const { return error_; }
@@ -173,14 +185,15 @@ class Track {
 };
 
 /// Demodulated by the encoder; with the cure, the axial scale factor by reversal against an auxiliary unit.
-TrackError platform(Mount mount, const Course& course, const std::vector<InertialSample<double>>& body, bool cured, std::uint64_t seed) {
+TrackError platform(Mount mount, const Course& course, const std::vector<InertialSample<double>>& body, bool cured,
+                    std::uint64_t seed) {
   Unit unit(seed);
   Unit auxiliary(seed, true);
   const Mat3<double> C_bp = axes_of(mount);
   Demodulator<double, 256> demodulator(0.0);
   (void)demodulator.add({}, course.angle[0], kPeriod);
-  TurnErrors<double> errors({0.007 * kRadPerDeg, 0.0105 * kRadPerDeg, 1.0 * kDegPerH, 2.0 * kDegPerH, 300.0 * kDegPerH, 1e-3,
-                             500e-6, 2.0 * kRadPerDeg});
+  TurnErrors<double> errors({0.007 * kRadPerDeg, 0.0105 * kRadPerDeg, 1.0 * kDegPerH, 2.0 * kDegPerH, 300.0 * kDegPerH,
+                             1e-3, 500e-6, 2.0 * kRadPerDeg});
   InertialSample<double> first;  // at rest: an auxiliary unit's bias, and gravity as the units show it
   Track track;
   double along = 0.0;
@@ -191,7 +204,8 @@ TrackError platform(Mount mount, const Course& course, const std::vector<Inertia
     const auto k = static_cast<std::size_t>(i);
     const double end = kPeriod * (i + 1);
     InertialSample<double> seen;
-    if (demodulator.add(unit.read(course.samples[k]), course.angle[k + 1], kPeriod) == Status::kOk) seen = demodulator.body();
+    if (demodulator.add(unit.read(course.samples[k]), course.angle[k + 1], kPeriod) == Status::kOk)
+      seen = demodulator.body();
     const InertialSample<double> reference = auxiliary.read(body[k]);
     if (cured) {
       const double step = course.angle[k + 1] - course.angle[k];
@@ -235,7 +249,8 @@ TrackError wheel(const Course& course, std::uint64_t seed) {
     const double east = static_cast<double>(state.longitude - start.longitude) * 6.39e6 * std::cos(Road::kLatitude);
     error.largest = std::max(error.largest, std::hypot(reckoning.north() - north, reckoning.east() - east));
     const auto C = state.attitude.toRotationMatrix();
-    error.heading = std::abs(std::remainder(reckoning.heading() - static_cast<double>(std::atan2(C(1, 0), C(0, 0))), 2.0 * kPi));
+    error.heading =
+        std::abs(std::remainder(reckoning.heading() - static_cast<double>(std::atan2(C(1, 0), C(0, 0))), 2.0 * kPi));
   }
   return error;
 }
@@ -261,20 +276,28 @@ TEST(RoadTest, TheWheelIsBestAndTheCuresHelp) {
       rms.largest += e.largest * e.largest / kSeeds;
       rms.heading += e.heading * e.heading / kSeeds;
     }
-    std::printf("[ FIGURE   ] road test, %-46s track %8.1f m, heading %7.2f deg (rms of %d)\n", name, std::sqrt(rms.largest),
-                std::sqrt(rms.heading) / kRadPerDeg, kSeeds);
+    std::printf("[ FIGURE   ] road test, %-46s track %8.1f m, heading %7.2f deg (rms of %d)\n", name,
+                std::sqrt(rms.largest), std::sqrt(rms.heading) / kRadPerDeg, kSeeds);
     return std::sqrt(rms.largest);
   };
   const double none = mean_over_seeds("strapped down", [&](std::uint64_t seed) { return strapped_down(body, seed); });
   const Course up = course_of(Mount::kVertical, steady);
-  const double vertical = mean_over_seeds("vertical axis", [&](std::uint64_t s) { return platform(Mount::kVertical, up, body, false, s); });
+  const double vertical =
+      mean_over_seeds("vertical axis", [&](std::uint64_t s) { return platform(Mount::kVertical, up, body, false, s); });
   const Course up_back = course_of(Mount::kVertical, reversing);
-  const double vertical_reversed = mean_over_seeds("vertical axis, reversed every 10 s", [&](std::uint64_t s) { return platform(Mount::kVertical, up_back, body, false, s); });
-  const double vertical_cured = mean_over_seeds("vertical axis, reversed, scale against auxiliary", [&](std::uint64_t s) { return platform(Mount::kVertical, up_back, body, true, s); });
+  const double vertical_reversed = mean_over_seeds("vertical axis, reversed every 10 s", [&](std::uint64_t s) {
+    return platform(Mount::kVertical, up_back, body, false, s);
+  });
+  const double vertical_cured =
+      mean_over_seeds("vertical axis, reversed, scale against auxiliary",
+                      [&](std::uint64_t s) { return platform(Mount::kVertical, up_back, body, true, s); });
   const Course along = course_of(Mount::kLongitudinal, steady);
-  const double longitudinal = mean_over_seeds("longitudinal axis", [&](std::uint64_t s) { return platform(Mount::kLongitudinal, along, body, false, s); });
+  const double longitudinal = mean_over_seeds(
+      "longitudinal axis", [&](std::uint64_t s) { return platform(Mount::kLongitudinal, along, body, false, s); });
   const Course along_back = course_of(Mount::kLongitudinal, reversing);
-  const double longitudinal_cured = mean_over_seeds("longitudinal axis, reversed, scale against aux.", [&](std::uint64_t s) { return platform(Mount::kLongitudinal, along_back, body, true, s); });
+  const double longitudinal_cured =
+      mean_over_seeds("longitudinal axis, reversed, scale against aux.",
+                      [&](std::uint64_t s) { return platform(Mount::kLongitudinal, along_back, body, true, s); });
   const Course rolling = course_of(Mount::kWheel, steady);
   const double hub = mean_over_seeds("right rear wheel", [&](std::uint64_t s) { return wheel(rolling, s); });
   EXPECT_LT(hub, 0.02 * 2000.0);
