@@ -81,6 +81,8 @@ nlohmann::ordered_json summary_of(const Options& o, const Recording& recording, 
                      {"heading_rms_deg", against->heading_rms / kRadPerDeg},
                      {"heading_end_deg", against->heading_end / kRadPerDeg}};
   }
+  if (against && track.distance > 0.0)  // a calibration of the radius, where the truth covers the whole way
+    tree["wheel"]["radius_from_truth_m"] = o.wheel_radius * against->distance / track.distance;
   tree["warnings"] = recording.warnings;
   for (const std::string& warning : track.warnings) tree["warnings"].push_back(warning);
   return tree;
