@@ -17,6 +17,7 @@ struct BodyMotionSeries {
   double period = 0.0;                       // s
   long long turns = 0;
   long long missed_pulses = 0;
+  long long stray_pulses = 0;
   long long saturated_turns = 0;
 };
 

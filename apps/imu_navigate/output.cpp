@@ -48,14 +48,18 @@ void write_kml(const std::string& path, const Track& track) {
   file.write(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<kml xmlns=\"http://www.opengis.net/kml/2.2\"><Document>"
       "<Placemark><name>track</name><Style><LineStyle><color>ff0000ff</color><width>3</width></LineStyle></Style>"
-      "<LineString><coordinates>\n");
+      "<MultiGeometry><LineString><coordinates>\n");
   char point[100];
+  double before = track.epoch.front().state.longitude;
   for (const Epoch& e : track.epoch) {
+    if (std::abs(e.state.longitude - before) > kPi)
+      file.write("</coordinates></LineString><LineString><coordinates>\n");
+    before = e.state.longitude;
     const int size = std::snprintf(point, sizeof point, "%.9f,%.9f,%.3f\n", e.state.longitude / kRadPerDeg,
                                    e.state.latitude / kRadPerDeg, e.state.height);
     file.write({point, static_cast<std::size_t>(size)});
   }
-  file.write("</coordinates></LineString></Placemark></Document></kml>\n");
+  file.write("</coordinates></LineString></MultiGeometry></Placemark></Document></kml>\n");
   file.commit();
 }
 

@@ -26,7 +26,7 @@ struct Stamped {
 
 bool is_csv(const std::string& path) { return path.size() > 4 && path.substr(path.size() - 4) == ".csv"; }
 
-std::string at(double t) { return figure(t, 9) + " s"; }
+std::string at(double t) { return figure(t, 13) + " s"; }
 
 class Collector final : public SampleSink {
  public:
@@ -72,7 +72,8 @@ class Collector final : public SampleSink {
       case ChannelClock::Verdict::kReset:
         break;
     }
-    throw io::input_error(path_, 0, channel, "the clock was set back or leapt by minutes: cut the recording there");
+    throw io::input_error(path_, 0, channel,
+                          "the stamps are more than a second apart, or the clock was set: is the unit of t right?");
   }
 
   std::string path_;
@@ -96,6 +97,10 @@ void read_log(const RecordingSource& source, Collector& collector, Recording& re
     progress.show("reading " + figure(100.0 * static_cast<double>(event.byte) / size, 3) + " %");
   }
   decoder.finish();
+  if (collector.samples_.empty())
+    throw io::input_error(
+        source.log, 0, "",
+        "no usable message on the IMU channel '" + source.channel + "' (a table's name ends in .csv)");
   recording.damaged = log.lost_records() + decoder.damaged().records;
 }
 
@@ -121,7 +126,9 @@ double period_of(const std::vector<std::int64_t>& utimes, const std::string& pat
   std::vector<double> steps;
   for (std::size_t i = 1; i < utimes.size(); ++i)
     steps.push_back(1e-6 * static_cast<double>(ChannelClock::difference(utimes[i], utimes[i - 1])));
-  if (steps.size() < 100) throw io::input_error(path, 0, "", "has fewer than 100 samples");
+  if (steps.size() < 100)
+    throw io::input_error(path, 0, "",
+                          "has " + std::to_string(utimes.size()) + " samples with stamps of their own, 100 are needed");
   const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
   std::nth_element(steps.begin(), middle, steps.end());
   const double median = *middle;
@@ -143,17 +150,18 @@ void fill(const RecordingSource& source, const Collector& collector, Recording& 
   const auto seconds = [&](std::int64_t utime) {
     return 1e-6 * static_cast<double>(origin) + 1e-6 * static_cast<double>(ChannelClock::difference(utime, origin));
   };
+  double clock = seconds(origin);  // smooth: a stamp that jitters is no hole
   for (std::size_t i = 0; i < collector.utimes_.size(); ++i) {
     const double t = seconds(collector.utimes_[i]);
     const InertialSample<double>& next = collector.samples_[i];
     if (i > 0) {
       const double step = t - recording.stamp.back();
-      const auto missing = static_cast<int>(std::lround(step / recording.period)) - 1;
       if (step > source.longest_gap + recording.period)
         throw io::input_error(
             source.log, 0, "t",
             "a gap of " + figure(step, 3) + " s before " + at(t) +
                 ": an inertial solution does not cross it; cut there, or allow it with --longest-gap-s");
+      const auto missing = static_cast<int>(std::floor((t - clock) / recording.period - 1.0 + 0.2));
       const InertialSample<double> last = recording.sample.back();
       const double before = recording.stamp.back();
       for (int k = 1; k <= missing; ++k) {
@@ -162,10 +170,17 @@ void fill(const RecordingSource& source, const Collector& collector, Recording& 
         recording.sample.push_back({last.w + share * (next.w - last.w), last.f + share * (next.f - last.f)});
         ++recording.filled;
       }
+      clock += recording.period * (1 + std::max(0, missing));
+      clock += 0.05 * (t - clock);
     }
     recording.stamp.push_back(t);
     recording.sample.push_back(next);
   }
+  const double elapsed = recording.stamp.back() - recording.stamp.front();
+  const double counted = recording.period * static_cast<double>(recording.stamp.size() - 1);
+  if (std::abs(counted - elapsed) > 1e-3 * elapsed)
+    recording.warnings.push_back("samples of " + figure(1e3 * recording.period, 5) + " ms make " + figure(counted, 6) +
+                                 " s of the " + figure(elapsed, 6) + " s between first and last: uneven sampling");
   for (const std::int64_t utime : collector.pulses_) recording.pulse.push_back(seconds(utime));
   std::sort(recording.pulse.begin(), recording.pulse.end());
 }
@@ -180,14 +195,23 @@ void interpolate_angle(const std::string& path, const Collector& collector, Reco
     const double last = angle.empty() ? reading.value : angle.back();
     angle.push_back(last + std::remainder(reading.value - last, 2.0 * kPi));
   }
-  if (t.size() < 2 || t.front() > recording.stamp[1] || t.back() < recording.stamp.back() - 1.0)
+  if (t.size() < 2 || t.front() > recording.stamp[1] || t.back() < recording.stamp.back() - 0.1)
     throw io::input_error(path, 0, "", "the encoder does not cover the recording");
   std::size_t k = 0;
+  std::size_t i = 0;
   for (const double stamp : recording.stamp) {
+    const double rate = std::abs(recording.sample[i++].w.z());
     while (k + 2 < t.size() && t[k + 1] < stamp) ++k;
     const double step = t[k + 1] - t[k];
     if (step > 0.1)
-      throw io::input_error(path, 0, "t", "no encoder reading for " + figure(step, 3) + " s after " + at(t[k]));
+      throw io::input_error(path, 0, "t",
+                            "no encoder reading for " + figure(step, 3) + " s after " + at(t[k]) +
+                                ": an encoder is read at least ten times a second");
+    if (rate * step > 2.5)
+      throw io::input_error(path, 0, "t",
+                            "the axis turns by " + figure(rate * step / kRadPerDeg, 3) +
+                                " deg between two encoder readings after " + at(t[k]) +
+                                ": which way is not to be told");
     recording.angle.push_back(angle[k] + (angle[k + 1] - angle[k]) * (stamp - t[k]) / step);
   }
 }

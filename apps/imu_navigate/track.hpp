@@ -38,6 +38,8 @@ struct Track {
   std::vector<Epoch> epoch;
   double heading_at_start = 0.0;  // rad
   double heading_sigma = 0.0;     // rad; 0: given, not estimated
+  double latitude_seen = 0.0;     // rad, by the Earth's rate
+  double latitude_sigma = 0.0;    // rad; 0: not estimated
   double distance = 0.0;          // m along the track, of a wheel
   double axle_scale = 0.0;        // of a wheel
   double saturated_time = 0.0;    // s, of a wheel

@@ -54,6 +54,8 @@ Truth::Truth(const std::string& path, double offset) : offset_(offset) {
   io::read_columns_csv(
       path, {"t", "lat", "lon", "h"},
       [&](const double* v) {
+        if (!(std::abs(v[1]) <= 0.5 * kPi))
+          throw io::input_error(path, 0, "lat", "is beyond a pole: are the columns right?");
         if (!point_.empty()) {
           const Point& last = point_.back();
           if (v[0] <= last.t) return;
@@ -66,14 +68,18 @@ Truth::Truth(const std::string& path, double offset) : offset_(offset) {
   const Plane plane(latitude(), longitude(), height());
   for (Point& p : point_) {
     p.north = (p.latitude - plane.latitude) * plane.north_per_rad;
-    p.east = (p.longitude - plane.longitude) * plane.east_per_rad;
+    p.east = std::remainder(p.longitude - plane.longitude, 2.0 * kPi) * plane.east_per_rad;
   }
-  std::size_t from = 0;
-  for (Point& p : point_) {
+  // half a second either side, or two positions where they are rarer
+  for (std::size_t k = 0; k < point_.size(); ++k) {
+    Point& p = point_[k];
+    std::size_t from = k;
+    std::size_t to = k;
+    while (from > 0 && (point_[from - 1].t >= p.t - kCourseSpan || from + 2 > k)) --from;
+    while (to + 1 < point_.size() && (point_[to + 1].t <= p.t + kCourseSpan || to < k + 2)) ++to;
     Parabola north;
     Parabola east;
-    while (point_[from].t < p.t - kCourseSpan) ++from;
-    for (std::size_t i = from; i < point_.size() && point_[i].t <= p.t + kCourseSpan; ++i) {
+    for (std::size_t i = from; i <= to; ++i) {
       north.add(point_[i].t - p.t, point_[i].north);
       east.add(point_[i].t - p.t, point_[i].east);
     }
@@ -99,7 +105,9 @@ void Truth::along(const Track& track, Visit visit) const {
     const double heading_a = euler_angles(a.state.attitude).z();
     const double turned = std::remainder(euler_angles(b.state.attitude).z() - heading_a, 2.0 * kPi);
     visit(p, (between(a.state.latitude, b.state.latitude) - plane.latitude) * plane.north_per_rad,
-          (between(a.state.longitude, b.state.longitude) - plane.longitude) * plane.east_per_rad,
+          (std::remainder(a.state.longitude - plane.longitude, 2.0 * kPi) +
+           share * std::remainder(b.state.longitude - a.state.longitude, 2.0 * kPi)) *
+              plane.east_per_rad,
           between(a.state.height, b.state.height), heading_a + share * turned);
     any = true;
   }
@@ -127,6 +135,8 @@ Comparison Truth::compare(const Track& track) const {
   Comparison comparison;
   double squares = 0.0;
   long long count = 0;
+  long long count_points = 0;
+  double first_t = 0.0;
   std::vector<std::pair<double, double>> last;
   bool first = true;
   double north_before = 0.0;
@@ -136,6 +146,8 @@ Comparison Truth::compare(const Track& track) const {
     first = false;
     north_before = p.north;
     east_before = p.east;
+    if (count_points++ == 0) first_t = p.t;
+    comparison.time = p.t - first_t;
     comparison.end_horizontal = std::hypot(north - p.north, east - p.east);
     comparison.largest_horizontal = std::max(comparison.largest_horizontal, comparison.end_horizontal);
     comparison.largest_vertical = std::max(comparison.largest_vertical, std::abs(up - p.height));
@@ -145,6 +157,7 @@ Comparison Truth::compare(const Track& track) const {
     ++count;
     last.emplace_back(p.t, error);
   });
+  comparison.moving = count > 0;
   if (count > 0) comparison.heading_rms = std::sqrt(squares / static_cast<double>(count));
   double sum = 0.0;
   int ends = 0;
@@ -165,9 +178,9 @@ void turn_track(Track& track, double angle) {
   const Quaternion<double> turn(Eigen::AngleAxisd(angle, Vec3<double>::UnitZ()));
   for (Epoch& epoch : track.epoch) {
     const double north = (epoch.state.latitude - start.latitude) * plane.north_per_rad;
-    const double east = (epoch.state.longitude - start.longitude) * plane.east_per_rad;
+    const double east = std::remainder(epoch.state.longitude - start.longitude, 2.0 * kPi) * plane.east_per_rad;
     epoch.state.latitude = start.latitude + (c * north - s * east) / plane.north_per_rad;
-    epoch.state.longitude = start.longitude + (s * north + c * east) / plane.east_per_rad;
+    epoch.state.longitude = std::remainder(start.longitude + (s * north + c * east) / plane.east_per_rad, 2.0 * kPi);
     epoch.state.velocity = turn * epoch.state.velocity;
     epoch.state.attitude = turn * epoch.state.attitude;
   }

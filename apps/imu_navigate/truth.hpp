@@ -13,7 +13,9 @@
 namespace trunnion::app {
 
 struct Comparison {
+  double time = 0.0;                // s, compared
   double distance = 0.0;            // m, of the truth
+  bool moving = false;              // the truth has a course somewhere
   double largest_horizontal = 0.0;  // m
   double end_horizontal = 0.0;      // m
   double largest_vertical = 0.0;    // m

@@ -91,6 +91,7 @@ TEST(SwingingAlignment, AddsLessThanAMicroradian) {
 
 TEST(SwingingAlignment, RefusesWhatCannotBeKnown) {
   SwingingAlignment<double> early(kLatitude, 60.0, kPeriod);
+  for (int i = 0; i < 4000; ++i) (void)early.add({Vec3<double>::Zero(), Vec3<double>(0.0, 0.0, -9.8 * kPeriod)});
   EXPECT_EQ(early.attitude().status(), Status::kNotObservable);
   Increment<double> bad;
   bad.velocity.x() = std::numeric_limits<double>::quiet_NaN();
@@ -227,6 +228,9 @@ TEST(FineAlignment, RefusesAMovingBase) {
   EXPECT_EQ(alignment.result().status(), Status::kMovingBase);
   EXPECT_GT(alignment.strangeness(), 3.0);
   EXPECT_GT(alignment.innovation().norm(), 2e-3);
+  for (int i = 0; i < 20000; ++i)  // standing again does not undo it
+    (void)alignment.add({sample.angle.cast<double>(), sample.velocity.cast<double>()});
+  EXPECT_EQ(alignment.result().status(), Status::kMovingBase);
   Increment<double> bad;
   bad.angle.x() = std::numeric_limits<double>::infinity();
   EXPECT_EQ(alignment.add(bad), Status::kOutOfRange);

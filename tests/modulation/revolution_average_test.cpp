@@ -116,7 +116,7 @@ TEST(RevolutionAverage, InterpolationReachesTheFloorOfWhiteNoise) {
 // Conservation, for every input: in integers the turns and what is still open add up to every count that went in.
 TEST(RevolutionAverage, IntegersLoseNothing) {
   simulation::Gaussian gaussian(9, 8);
-  RevolutionAverage<std::int32_t> average(2, 1000000000LL, 0);
+  RevolutionAverage<std::int32_t> average(2, 37 * 2000000000LL, 0);
   std::array<std::int64_t, 6> in{};
   std::array<std::int64_t, 6> out{};
   std::int64_t carried = 0;
@@ -124,7 +124,7 @@ TEST(RevolutionAverage, IntegersLoseNothing) {
   for (int i = 0; i < 20000; ++i) {
     UnitOutput<std::int32_t> s{};
     for (auto& c : s) c = static_cast<std::int32_t>(4e8 * gaussian());
-    s[2] = 2000000000;  // two turns a sample: no pulse is a bounce
+    s[2] = 2000000000;  // 37 samples a turn, give or take one
     if (i % 37 != 36) {
       if (!first) {
         for (std::size_t k = 0; k < 6; ++k) in[k] += 65536LL * s[k];
@@ -226,7 +226,7 @@ TEST(RevolutionAverage, NoticesMissedAndBouncingPulses) {
 TEST(RevolutionAverage, SaysWhenTheAxialGyroSaturated) {
   RevolutionAverage<std::int16_t> average(2, 62832, 32767);
   UnitOutput<std::int16_t> fine{};
-  fine[2] = 20000;
+  fine[2] = 16000;
   UnitOutput<std::int16_t> pinned = fine;
   pinned[2] = -32767;
   EXPECT_EQ(average.add_with_pulse(fine, 0), Pulse::kFirst);
@@ -240,6 +240,17 @@ TEST(RevolutionAverage, SaysWhenTheAxialGyroSaturated) {
   EXPECT_TRUE(average.turn().saturated);
   EXPECT_EQ(average.turn().turns, 2);  // by the time of the turn before
   EXPECT_EQ(average.add_with_pulse(pinned, 9), Pulse::kBounce);
+}
+
+// No pulse for ever at full scale: sums stay where they are exact, and a mean before any turn is none.
+TEST(RevolutionAverage, IsExactHoweverLongNoPulseComes) {
+  RevolutionAverage<std::int32_t> average(2, 1000000, 0);
+  EXPECT_EQ(average.turn().mean(0), 0);
+  UnitOutput<std::int32_t> full{};
+  full.fill(2147483647);
+  EXPECT_EQ(average.add_with_pulse(full, 0), Pulse::kFirst);
+  for (int i = 0; i < 200000; ++i) average.add(full);
+  EXPECT_EQ(average.add_with_pulse(full, 70000), Pulse::kBounce);  // no share of a sample
 }
 
 }  // namespace

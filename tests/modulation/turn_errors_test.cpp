@@ -172,6 +172,39 @@ TEST_F(TwoPosition, SaysWhenAFlipDoesNotEnd) {
   EXPECT_EQ(modulation.state(), FlipState::kTurning);
 }
 
+// The main unit dead, and the flip stuck with it: both are told, the mechanics first, and no time is lost.
+TEST_F(TwoPosition, SaysWhenTheMainUnitIsDead) {
+  run(10.0);
+  FlipSample<double> dead = sample;
+  dead.has_pulse = false;
+  dead.main.w.setConstant(std::numeric_limits<double>::quiet_NaN());
+  double bridged = 0.0;
+  for (int i = 0; i < 100; ++i) bridged += modulation.add(dead) ? modulation.interval().duration : 0.0;
+  EXPECT_EQ(modulation.fault(), FlipFault::kMainSilent);
+  dead.flip = FlipSwitch::kBetween;
+  for (int i = 0; i < 500; ++i) bridged += modulation.add(dead) ? modulation.interval().duration : 0.0;
+  EXPECT_EQ(modulation.fault(), FlipFault::kFlipOverdue);
+  EXPECT_NEAR(out + bridged, time() + 6.0, 1e-6);
+}
+
+// A reversal told again starts its ramp again, and one told during a flip is not forgotten.
+TEST_F(TwoPosition, WaitsForTheRamp) {
+  run(10.0);
+  modulation.reverse();
+  run(0.9);
+  modulation.reverse();
+  run(0.9);
+  EXPECT_EQ(modulation.state(), FlipState::kReversing);
+  run(5.0);
+  EXPECT_EQ(modulation.state(), FlipState::kTurning);
+  run(0.1, FlipSwitch::kBetween);
+  modulation.reverse();
+  for (int i = 0; i < 99; ++i) {
+    (void)step(FlipSwitch::kSecond);
+    EXPECT_EQ(modulation.state(), FlipState::kSettling);
+  }
+}
+
 TEST_F(TwoPosition, SaysWhenThePulseStops) {
   run(10.0);
   pulses = false;
@@ -203,6 +236,10 @@ TEST_F(TwoPosition, BridgesASampleThatIsNotANumber) {
   bad.auxiliary.f.x() = std::numeric_limits<double>::infinity();
   EXPECT_TRUE(modulation.add(bad));
   EXPECT_EQ(modulation.interval().source, IntervalSource::kHeld);
+  bad = sample;
+  bad.has_pulse = true;
+  bad.pulse_before = std::numeric_limits<double>::quiet_NaN();
+  (void)modulation.add(bad);
   run(10.0);
   EXPECT_EQ(modulation.state(), FlipState::kTurning);
   EXPECT_TRUE(std::isfinite(modulation.interval().body.w.norm()));

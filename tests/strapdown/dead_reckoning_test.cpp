@@ -156,7 +156,14 @@ TEST(WheelDeadReckoning, WaitsForRestAndSaysWhatItSees) {
   }
   EXPECT_EQ(reckoning.state(), WheelState::kWaiting);
   EXPECT_EQ(reckoning.distance(), 0.0);
+  for (int i = 0; i < 600; ++i) {  // evenly: gravity goes round
+    sample.w.z() = 25.0;
+    sample.f = Vec3<double>(9.8 * std::sin(25.0 * kPeriod * i), -9.8 * std::cos(25.0 * kPeriod * i), 0.0);
+    (void)reckoning.add(sample);
+  }
+  EXPECT_EQ(reckoning.state(), WheelState::kWaiting);
   sample.w.z() = 0.0;
+  sample.f = Vec3<double>(0.0, -9.8, 0.0);
   for (int i = 0; i < 130; ++i) (void)reckoning.add(sample);
   EXPECT_EQ(reckoning.state(), WheelState::kRest);
   sample.w.z() = 5.0;

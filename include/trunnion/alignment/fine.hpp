@@ -60,7 +60,8 @@ class FineAlignment {
   void move(const Vec3<T>& velocity) { base_velocity_ = velocity; }
 
   /// Takes the next sample. @return kOutOfRange, and nothing changed, for one that is not finite or turns by more than
-  /// a radian; kMovingBase while the base moves
+  /// a radian; kMovingBase from
+  /// the first time on that the base moves: what was found since is not to be believed
   Status add(const Increment<T>& sample) {
     Increment<T> corrected = sample;
     corrected.angle -= period_ * gyro_bias_;
@@ -77,12 +78,12 @@ class FineAlignment {
       update();
       sum_ = Increment<T>{};
     }
-    return moving() ? Status::kMovingBase : Status::kOk;
+    return moved_ ? Status::kMovingBase : Status::kOk;
   }
 
-  /// Attitude and its covariance. @return kMovingBase while the base moves
+  /// Attitude and its covariance. @return kMovingBase once the base has moved
   [[nodiscard]] Result<Alignment<T>> result() const {
-    if (moving()) return Status::kMovingBase;
+    if (moved_) return Status::kMovingBase;
     Alignment<T> alignment;
     alignment.q_nb = navigator_.state().attitude;
     alignment.covariance = P_.template topLeftCorner<3, 3>();
@@ -93,14 +94,14 @@ class FineAlignment {
   [[nodiscard]] const Vec3<T>& gyro_bias() const { return gyro_bias_; }    ///< rad/s
   [[nodiscard]] const Vec3<T>& accel_bias() const { return accel_bias_; }  ///< m/s^2
   [[nodiscard]] const ErrorMatrix<T>& covariance() const { return P_; }
-  /// Velocity against what a base at rest explains, in sigmas: mean square over the last 32 updates, 1 if all is well.
+  /// Velocity against what a base at rest explains, in sigmas: mean square that forgets over 32 updates (as one of 63:
+  /// 189 degrees of freedom), 1 if all is well.
   [[nodiscard]] const T& strangeness() const { return strangeness_; }
   /// The last of these velocities [m/s], north-east-down.
   [[nodiscard]] const Vec3<T>& innovation() const { return innovation_; }
 
  private:
-  // 96 degrees of freedom: chance passes it once in 1e9 updates
-  [[nodiscard]] bool moving() const { return strangeness_ > T(2.3); }
+  static constexpr double kStrange = 2.3;  // by chance: 13 sigmas of the mean that strangeness() is
 
   void update() {
     using std::cos;
@@ -131,6 +132,7 @@ class FineAlignment {
     S.diagonal().array() += noise_.velocity * noise_.velocity;
     const Mat3<T> S_inverse = S.inverse();
     strangeness_ += (innovation_.dot(S_inverse * innovation_) / T(3) - strangeness_) / T(32);
+    moved_ = moved_ || strangeness_ > T(kStrange);
     const Eigen::Matrix<T, 15, 3> K = PHt * S_inverse;
     const Eigen::Matrix<T, 15, 1> found = K * innovation_;
     const ErrorMatrix<T> left = ErrorMatrix<T>::Identity() - K * H;  // Joseph's form
@@ -155,6 +157,7 @@ class FineAlignment {
   Vec3<T> innovation_ = Vec3<T>::Zero();
   T strangeness_ = T(1);
   int count_ = 0;
+  bool moved_ = false;
 };
 
 }  // namespace trunnion

@@ -50,11 +50,12 @@ class SwingingAlignment {
     return Status::kOk;
   }
 
-  /// q_nb at the last sample, eq. (2). @return kNotObservable before a tenth of a minute has passed, or near a pole
+  /// q_nb at the last sample, eq. (2). @return kNotObservable before nine tenths of the duration or a tenth of a minute
+  /// have passed, or near a pole
   [[nodiscard]] Result<Quaternion<T>> attitude() const {
     using std::cos;
     using std::sin;
-    if (!(time_ > T(6)) || !(cos(latitude_) > T(0.02))) return Status::kNotObservable;
+    if (!(time_ > T(6)) || !(time_ > T(1.8) * middle_) || !(cos(latitude_) > T(0.02))) return Status::kNotObservable;
     const Mat3<T> seen = triad(velocity_middle_, velocity_);
     const Mat3<T> expected = triad(expected_velocity(time_middle_), expected_velocity(time_));
     const Mat3<T> C_i0b0 = expected * seen.transpose();
@@ -66,7 +67,19 @@ class SwingingAlignment {
     return (Quaternion<T>(Mat3<T>(C_ni0 * C_i0b0)) * q_b0b_).normalized();
   }
 
+  /// What the heading may be off by [rad]: the angle between the two directions of gravity is to be that of eq. (1),
+  /// and a gyro bias that changes it turns the heading by as much of it. One of two components: a hint, no sigma.
+  [[nodiscard]] T heading_doubt() const {
+    using std::abs;
+    const T expected = angle(expected_velocity(time_middle_), expected_velocity(time_));
+    return expected > T(0) ? abs(angle(velocity_middle_, velocity_) - expected) / expected : T(0);
+  }
+
  private:
+  static T angle(const Vec3<T>& a, const Vec3<T>& b) {
+    using std::atan2;
+    return atan2(a.cross(b).norm(), a.dot(b));
+  }
   /// Direction of V_i0, eq. (1).
   Vec3<T> expected_velocity(const T& t) const {
     using std::cos;

@@ -1,18 +1,19 @@
 // SPDX-FileCopyrightText: 2026 the trunnion authors
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// The body's motion from a turning unit with an angle encoder: every sample at the unit's full rate, and the means of
-/// a whole turn that slides along with them.
+/// The body's motion from a turning unit with an angle encoder: every sample at the unit's full rate, and the unit's
+/// bias over a whole turn that slides along with them.
 ///
 /// Frame p is fixed to the unit, its z is the axis. A sample is the mean over h, in which the axis turned by s = W h:
 ///
 ///   u = exp(i (phi - s/2 - W d)) m / sinc(s/2),    u_z = z - W                                        ... (1)
-///   b = (1/T) integral of m over the 2 pi that end now                                                ... (2)
+///   A = (1/T) integral of m,  B = (1/T) integral of u,  E = (1/T) integral of exp(i phi), over the 2 pi that end now
+///   b = (A - E* B) / (1 - |E|^2)                                                                       ... (2)
 ///
-/// m = x + i y, phi the encoder's angle at the stamp, d the delay of the unit's filter against the encoder. The window
-/// of (2) is a ring of samples and one running sum: what comes in is added, what leaves is taken away, the oldest
-/// sample in part: O(1) a sample. Only the spread of m over a turn enters the rounding: the sum is compensated.
-/// docs/theory/modulation.md.
+/// m = x + i y, phi the encoder's angle at the stamp, d the delay of the unit's filter against the encoder. At an even
+/// speed E is 0 and b the mean of m; at another the mean would hold a share of the body's motion. The window is a ring
+/// of samples and running sums: what comes in is added, what leaves is taken away, the oldest sample in part: O(1) a
+/// sample. The sums are compensated. docs/theory/modulation.md.
 
 #pragma once
 
@@ -69,8 +70,9 @@ class Demodulator {
       return Status::kNotObservable;
     }
     const T rate = step / period;
-    body_ = demodulate(mean, angle - step / T(2) - rate * delay_, step, period);
-    slide(mean, step, period);
+    const T middle = angle - step / T(2) - rate * delay_;
+    body_ = demodulate(mean, middle, step, period);
+    slide(mean, middle, step, period);
     return Status::kOk;
   }
 
@@ -83,8 +85,8 @@ class Demodulator {
   /// The last sample in body axes, eq. (1). Its biases are still in it.
   [[nodiscard]] const InertialSample<T>& body() const { return body_; }
 
-  /// Means in p over the last whole turn, eq. (2). @return kNotObservable before a turn is full, after the direction
-  /// changed, or when a turn takes more than Capacity samples
+  /// Over the last whole turn: b of eq. (2) across the axis [p], the mean along it. @return kNotObservable before a
+  /// turn is full, after the direction changed, or when a turn takes more than Capacity samples
   [[nodiscard]] Result<InertialSample<T>> whole_turn() const {
     const T turn = T(2.0 * kPi);
     const T size = angle_.sum < T(0) ? -angle_.sum : angle_.sum;
@@ -92,15 +94,26 @@ class Demodulator {
     const Entry& oldest = ring_[first_];
     const T step = oldest.step < T(0) ? -oldest.step : oldest.step;
     // the share of the oldest sample that lies more than a turn back
-    const T beyond = step > T(0) ? (size - turn) / step : T(0);
-    const T out = beyond * oldest.period;
+    const T out = step > T(0) ? (size - turn) / step * oldest.period : T(0);
     const T time = time_.sum - out;
-    return InertialSample<T>{(sum_w_.sum - oldest.mean.w * out) / time, (sum_f_.sum - oldest.mean.f * out) / time};
+    const Vec3<T> e = (phasor_.sum - out * oldest.phasor) / time;
+    const T rest = T(1) - e.squaredNorm();
+    if (!(rest > T(0.1))) return Status::kNotObservable;
+    const auto bias = [&](const Vec3<T>& plain, const Vec3<T>& turned) {
+      Vec3<T> b = (plain - turn_about_z(T(-e.y()), e.x(), turned)) / rest;
+      b.z() = plain.z();
+      return b;
+    };
+    return InertialSample<T>{
+        bias((sum_w_.sum - out * oldest.mean.w) / time, (turned_w_.sum - out * oldest.turned.w) / time),
+        bias((sum_f_.sum - out * oldest.mean.f) / time, (turned_f_.sum - out * oldest.turned.f) / time)};
   }
 
  private:
   struct Entry {
     InertialSample<T> mean;
+    InertialSample<T> turned;          // eq. (1)
+    Vec3<T> phasor = Vec3<T>::Zero();  // exp(i phi) / sinc, as turned has it
     T step = T(0);
     T period = T(0);
   };
@@ -117,11 +130,14 @@ class Demodulator {
     }
   };
 
-  void slide(const InertialSample<T>& mean, const T& step, const T& period) {
+  void slide(const InertialSample<T>& mean, const T& middle, const T& step, const T& period) {
+    using std::cos;
+    using std::sin;
     if ((step > T(0) && angle_.sum < T(0)) || (step < T(0) && angle_.sum > T(0))) clear();
     if (count_ == Capacity) drop();
     Entry& entry = ring_[(first_ + count_) % Capacity];
-    entry = {mean, step, period};
+    const T k = sinc_correction(step);
+    entry = {mean, body_, Vec3<T>(k * cos(middle), k * sin(middle), T(0)), step, period};
     ++count_;
     change(entry, T(1));
     const T turn = T(2.0 * kPi);
@@ -140,12 +156,15 @@ class Demodulator {
     const T time = sign * entry.period;
     sum_w_.add((time * entry.mean.w).eval());
     sum_f_.add((time * entry.mean.f).eval());
+    turned_w_.add((time * entry.turned.w).eval());
+    turned_f_.add((time * entry.turned.f).eval());
+    phasor_.add((time * entry.phasor).eval());
     angle_.add(sign * entry.step);
     time_.add(time);
   }
   void clear() {
     count_ = 0;
-    sum_w_ = sum_f_ = {Vec3<T>::Zero(), Vec3<T>::Zero()};
+    sum_w_ = sum_f_ = turned_w_ = turned_f_ = phasor_ = {Vec3<T>::Zero(), Vec3<T>::Zero()};
     angle_ = time_ = {T(0), T(0)};
   }
 
@@ -158,6 +177,9 @@ class Demodulator {
   std::size_t count_ = 0;
   Sum<Vec3<T>> sum_w_{Vec3<T>::Zero(), Vec3<T>::Zero()};
   Sum<Vec3<T>> sum_f_{Vec3<T>::Zero(), Vec3<T>::Zero()};
+  Sum<Vec3<T>> turned_w_{Vec3<T>::Zero(), Vec3<T>::Zero()};
+  Sum<Vec3<T>> turned_f_{Vec3<T>::Zero(), Vec3<T>::Zero()};
+  Sum<Vec3<T>> phasor_{Vec3<T>::Zero(), Vec3<T>::Zero()};
   Sum<T> angle_{T(0), T(0)};
   Sum<T> time_{T(0), T(0)};
 };

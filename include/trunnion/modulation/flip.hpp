@@ -12,11 +12,12 @@
 ///       +-------- kFlipping     longer than it may take: fault() == kFlipOverdue, bridged on
 ///       switch in a position
 ///
-/// A main sample that is not finite is a lost one: the open turn is broken off and bridged.
-/// In kTurning an interval goes out with every pulse: means of the turn in body axes, across the axis free of bias
-/// (index_demodulator.hpp), along it corrected by what is known (turn_errors.hpp). In every other state each sample of
-/// the auxiliary unit goes out, less the bias it showed against the main unit; when it is silent too, the last interval
-/// is held and said to be. Intervals follow each other without a gap. docs/theory/modulation.md.
+/// A main sample that is not finite is a lost one: the open turn is broken off and bridged. One fault is told at a
+/// time, that of the mechanics first. In kTurning an interval goes out with every pulse: means of the turn in body
+/// axes, across the axis free of bias (index_demodulator.hpp), along it corrected by what is known (turn_errors.hpp).
+/// In every other state each sample of the auxiliary unit goes out, less the bias it showed against the main unit; when
+/// it is silent too, the last interval is held and said to be. Intervals follow each other without a gap.
+/// docs/theory/modulation.md.
 
 #pragma once
 
@@ -35,6 +36,7 @@ enum class FlipFault : std::uint8_t {
   kNoPulse,          ///< the platform should turn, but no pulse came in time
   kFlipOverdue,      ///< the switch did not reach a position in time
   kAuxiliarySilent,  ///< no auxiliary samples while they are needed
+  kMainSilent,       ///< samples of the main unit are not finite
   kSaturated,        ///< the axial gyro of the main unit is at its range
 };
 
@@ -83,10 +85,10 @@ class TwoPositionModulation {
         gyro_(gyro),
         accel_(accel) {}
 
-  /// The platform was told to turn the other way, or at another speed.
+  /// The platform was told to turn the other way, or at another speed: pulses count again after the ramp.
   void reverse() {
-    if (state_ != FlipState::kTurning) return;
-    leave(FlipState::kReversing);
+    ramp_left_ = limits_.reversal;
+    if (state_ == FlipState::kTurning) leave(FlipState::kReversing);
   }
 
   /// @return whether an interval is out: interval(). The one that an open turn leaves behind when it is broken off
@@ -94,19 +96,29 @@ class TwoPositionModulation {
   bool add(const FlipSample<T>& given) {
     FlipSample<T> sample = given;
     sample.has_auxiliary = given.has_auxiliary && finite(given.auxiliary);
+    sample.has_pulse = given.has_pulse && given.pulse_before >= T(0) && given.pulse_before <= T(1);
     waited_ += period_;
-    watch(sample);
-    if (!finite(sample.main)) {
-      if (state_ == FlipState::kTurning) leave(FlipState::kSettling);
-      return bridge(sample, T(1));
-    }
+    ramp_left_ -= period_;
+    fault_ = FlipFault::kNone;
     if (state_ != FlipState::kFlipping && sample.flip != switch_of(position_)) leave(FlipState::kFlipping);
     if (state_ == FlipState::kFlipping && sample.flip != FlipSwitch::kBetween) {
       position_ = sample.flip == FlipSwitch::kFirst ? UnitPosition::kFirst : UnitPosition::kSecond;
-      state_ = FlipState::kSettling;
-      waited_ = T(0);
+      leave(FlipState::kSettling);
+    }
+    const T ramp = ramp_left_ > T(0) ? ramp_left_ : T(0);
+    if (state_ == FlipState::kFlipping && waited_ > limits_.flip) fault_ = FlipFault::kFlipOverdue;
+    if (state_ != FlipState::kFlipping && waited_ > limits_.pulse + limits_.reversal + ramp)
+      fault_ = FlipFault::kNoPulse;
+    if (!finite(sample.main)) {
+      if (state_ == FlipState::kTurning) leave(FlipState::kSettling);
+      if (fault_ == FlipFault::kNone) fault_ = FlipFault::kMainSilent;
+      return bridge(sample, T(1));
     }
     const InertialSample<T> platform{in_platform(position_, sample.main.w), in_platform(position_, sample.main.f)};
+    const T w = platform.w.z();
+    if (fault_ == FlipFault::kNone && state_ != FlipState::kFlipping && axial_range_ > T(0) &&
+        (w < T(0) ? -w : w) >= T(0.995) * axial_range_)
+      fault_ = FlipFault::kSaturated;
     switch (state_) {
       case FlipState::kTurning:
         return turning(platform, sample);
@@ -114,7 +126,6 @@ class TwoPositionModulation {
       case FlipState::kSettling:
         return settling(platform, sample);
       case FlipState::kFlipping:
-        if (waited_ > limits_.flip) fault_ = FlipFault::kFlipOverdue;
         return bridge(sample, T(1));
     }
     return false;
@@ -138,13 +149,6 @@ class TwoPositionModulation {
   static bool finite(const InertialSample<T>& sample) {
     using std::isfinite;
     return isfinite(sample.w.sum()) && isfinite(sample.f.sum());
-  }
-
-  void watch(const FlipSample<T>& sample) {
-    fault_ = FlipFault::kNone;
-    const T w = in_platform(position_, sample.main.w).z();
-    if (state_ != FlipState::kFlipping && axial_range_ > T(0) && (w >= axial_range_ || w <= -axial_range_))
-      fault_ = FlipFault::kSaturated;
   }
 
   /// Breaks the open turn off: the auxiliary unit stands in for it.
@@ -172,10 +176,7 @@ class TwoPositionModulation {
   }
 
   bool settling(const InertialSample<T>& platform, const FlipSample<T>& sample) {
-    if (waited_ > limits_.pulse + (state_ == FlipState::kReversing ? limits_.reversal : T(0)))
-      fault_ = FlipFault::kNoPulse;
-    const bool ready = state_ == FlipState::kSettling || waited_ > limits_.reversal;
-    if (!sample.has_pulse || !ready) return bridge(sample, T(1));
+    if (!sample.has_pulse || ramp_left_ > T(0)) return bridge(sample, T(1));
     demodulator_.restart();
     (void)demodulator_.add_with_pulse(platform, sample.pulse_before);
     const bool out = bridge(sample, sample.pulse_before);
@@ -197,6 +198,7 @@ class TwoPositionModulation {
 
   bool bridge(const FlipSample<T>& sample, const T& share) {
     carry(sample, share);
+    if (!(open_time_ > T(0))) return false;
     interval_.duration = open_time_;
     gyro_.propagate(open_time_);
     accel_.propagate(open_time_);
@@ -206,7 +208,7 @@ class TwoPositionModulation {
       interval_.body.f = sum_.f / heard_ - bias_.f;
     } else {
       interval_.source = IntervalSource::kHeld;
-      fault_ = FlipFault::kAuxiliarySilent;
+      if (fault_ == FlipFault::kNone) fault_ = FlipFault::kAuxiliarySilent;
     }
     forget();
     return true;
@@ -220,7 +222,7 @@ class TwoPositionModulation {
     const bool heard = heard_ > T(0.5) * open_time_;
     const InertialSample<T> auxiliary = heard ? InertialSample<T>{sum_.w / heard_, sum_.f / heard_} : sum_;
     interval_.body = turn.body;
-    if (!turn.saturated) {
+    if (!turn.saturated && !turn.unsteady) {
       gyro_.add_across(position_, turn.unit.w, turn.rate, turn.period);
       accel_.add_across(position_, turn.unit.f, r, turn.period);
       if (heard) {
@@ -228,14 +230,14 @@ class TwoPositionModulation {
         accel_.add_along(position_, turn.body.f.z(), T(0), auxiliary.f.z(), turn.period);
       }
       interval_.body.w.z() = gyro_.along(position_, turn.body.w.z(), turn.rate);
-    } else if (heard) {
+    } else if (turn.saturated && heard) {
       interval_.body.w.z() = auxiliary.w.z() - bias_.w.z();
     }
     interval_.body.f.z() = accel_.along(position_, turn.body.f.z(), T(0));
     interval_.along_sigma = gyro_.along_sigma(position_, turn.rate);
     interval_.duration = turn.period;
     interval_.source = IntervalSource::kMain;
-    if (heard) learn(auxiliary, turn);
+    if (heard && !turn.unsteady) learn(auxiliary, turn);
     forget();
   }
 
@@ -264,7 +266,8 @@ class TwoPositionModulation {
   FlipState state_ = FlipState::kSettling;
   FlipFault fault_ = FlipFault::kNone;
   UnitPosition position_ = UnitPosition::kFirst;
-  T waited_ = T(0);
+  T waited_ = T(0);     // since the state began, or the last pulse
+  T ramp_left_ = T(0);  // until the platform has its new speed
   T open_time_ = T(0);
   T heard_ = T(0);
   InertialSample<T> sum_;

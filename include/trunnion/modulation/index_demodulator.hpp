@@ -43,6 +43,8 @@ struct TurnMean {
   T rate = T(0);           ///< of the axis against the body [rad/s], eq. (2), signed
   int turns = 0;           ///< between the two pulses
   bool saturated = false;  ///< the axial gyro was at its range: body.w.z() is not to be believed
+  bool unsteady =
+      false;  ///< c changed by more than 0.3 rad a turn, the body's turning that is: (4) is too short for it
   InertialSample<T> body;  ///< means in body axes; across the axis the unit's bias is gone, along it it stays
   InertialSample<T> unit;  ///< across the axis b of eq. (3) [p], along it the mean
 };
@@ -55,8 +57,9 @@ class IndexDemodulator {
   IndexDemodulator(const T& period, const T& axial_range, const T& index_angle)
       : period_(period), index_angle_(index_angle), means_(2, T(2.0 * kPi) / period, axial_range) {}
 
-  /// A sample without a pulse. @param mean over the sample, in p
+  /// A sample without a pulse; one that is not finite breaks the open turn off. @param mean over the sample, in p
   void add(const InertialSample<T>& mean) {
+    if (!finite(mean)) return restart();
     means_.add(output(mean));
     accumulate(mean, T(1));
   }
@@ -64,6 +67,10 @@ class IndexDemodulator {
   /// A sample with a pulse in it. @param before share of the sample that lies before the pulse, in [0, 1]
   /// @return kTurn: it stands in turn()
   Pulse add_with_pulse(const InertialSample<T>& mean, const T& before) {
+    if (!finite(mean)) {
+      restart();
+      return Pulse::kBounce;
+    }
     const Pulse pulse = means_.add_with_pulse(output(mean), before);
     if (pulse == Pulse::kBounce) {
       accumulate(mean, T(1));
@@ -90,10 +97,15 @@ class IndexDemodulator {
   /// Forgets the open turn: the axis was not followed for a while.
   void restart() {
     means_.restart();
-    angle_ = time_ = T(0);
+    angle_ = time_ = excess_ = T(0);
   }
 
  private:
+  static bool finite(const InertialSample<T>& mean) {
+    using std::isfinite;
+    return isfinite(mean.w.sum()) && isfinite(mean.f.sum());
+  }
+
   static UnitOutput<T> output(const InertialSample<T>& mean) {
     return {mean.w.x(), mean.w.y(), mean.w.z(), mean.f.x(), mean.f.y(), mean.f.z()};
   }
@@ -139,6 +151,8 @@ class IndexDemodulator {
     turn_.rate = whole / turn_.period;
     const T excess = (angle - whole) / turn_.period;
     const T k = excess - excess_;
+    const T change = k * turn_.period;
+    turn_.unsteady = (change < T(0) ? -change : change) > T(0.3);
     const Vec3<T> e = e_.moved(k) / samples;
     separate(e, Vec3<T>(revolution.mean(0), revolution.mean(1), revolution.mean(2)), w_.moved(k) / samples,
              turn_.body.w, turn_.unit.w);

@@ -15,8 +15,10 @@
 ///   sum = (1 - r_0) s_0 + s_1 + ... + s_(n-1) + r_n s_n                                                    ... (2)
 ///
 /// so that the scatter of (1) is that of white noise over T, not that of the sampling (docs/theory/modulation.md).
-/// The axial sum tells how many turns lie between two pulses: a bouncing pulse is passed over, a missed one noticed,
-/// and the mean over two or three turns is as good as over one. In integers, r counts in 65536ths and sums are exact.
+/// The axial sum tells how many turns lie between two pulses: a pulse that bounces or has no business there is passed
+/// over, a missed one noticed, and the mean over two or three turns is as good as over one. It tells as long as the
+/// body itself turns about the axis by less than a quarter of the platform's speed; beyond, no pulse fits, which is not
+/// quiet. In integers, r counts in 65536ths and sums are exact.
 
 #pragma once
 
@@ -52,9 +54,10 @@ struct Revolution {
   int bounces = 0;           ///< pulses passed over within it
   bool saturated = false;    ///< the axial gyro was at its range: turns comes from the time of the turn before
 
-  /// Mean of an output over the turn, eq. (1); integers round to the nearest count.
+  /// Mean of an output over the turn, eq. (1); integers round to the nearest count. Zero before there is a turn.
   [[nodiscard]] C mean(std::size_t output) const {
     const Sum s = sum[output];
+    if (!(samples > Sum(0))) return C(0);
     if constexpr (std::is_integral_v<C>) {
       const Sum half = samples / 2;
       return static_cast<C>((s >= 0 ? s + half : s - half) / samples);
@@ -68,7 +71,7 @@ struct Revolution {
 enum class Pulse : std::uint8_t {
   kFirst,   ///< a turn begins; none was open
   kTurn,    ///< a turn, or several of which pulses were missed, is complete
-  kBounce,  ///< less than half a turn after the last: passed over
+  kBounce,  ///< not within a quarter of a whole number of turns after the last: passed over
 };
 
 template <class C>
@@ -78,39 +81,53 @@ class RevolutionAverage {
   static constexpr Sum kOne = RevolutionSum<C>::kOne;
 
   /// @param axial output along the axis, 0, 1 or 2 (gyro x, y, z)
-  /// @param full_turn what the axial output of one turn sums to: 2 pi / (scale * sample period), in outputs; positive
+  /// @param full_turn what the axial output of one turn sums to: 2 pi / (scale * sample period), in outputs; positive,
+  /// and a turn less than 32767 samples: a longer one is broken off
   /// @param axial_range output at which the axial gyro saturates; 0: unknown
   RevolutionAverage(std::size_t axial, Sum full_turn, C axial_range)
-      : axial_(axial), full_turn_(full_turn), axial_range_(axial_range) {}
+      : axial_(axial),
+        full_turn_(full_turn),
+        axial_range_(axial_range),
+        near_range_(static_cast<C>(axial_range - axial_range / C(200))) {}
 
   /// A sample without a pulse.
   void add(const UnitOutput<C>& sample) {
     accumulate(sample, kOne);
     look_at_range(sample);
+    break_off_if_endless();
   }
 
   /// A sample with a pulse in it. @param before fraction of the sample that lies before the pulse, in [0, kOne]
   /// @return kTurn: the turn stands in turn()
   Pulse add_with_pulse(const UnitOutput<C>& sample, Sum before) {
+    if (!(before >= Sum(0) && before <= kOne)) {
+      add(sample);
+      return Pulse::kBounce;
+    }
     look_at_range(sample);
     const Sum angle = open_.sum[axial_] + static_cast<Sum>(sample[axial_]) * before;
-    Sum size = angle < Sum(0) ? -angle : angle;
-    Sum turn_size = full_turn_ * kOne;
-    if (open_.saturated && closed_.turns > 0) {  // the gyro says too little: the last turn's time stands in for it
-      size = open_.samples + before;
-      turn_size = closed_.samples / static_cast<Sum>(closed_.turns);
+    const Sum size = angle < Sum(0) ? -angle : angle;
+    const Sum turn_size = full_turn_ * kOne;
+    int turns = whole(size, turn_size);
+    Sum off = size - static_cast<Sum>(turns) * turn_size;
+    if (open_.saturated) {  // the gyro says too little: the last turn's time may say more
+      if (closed_.turns > 0) {
+        const int by_time = whole(open_.samples + before, closed_.samples / static_cast<Sum>(closed_.turns));
+        turns = by_time > turns ? by_time : turns;
+      }
+      off = Sum(0);
     }
-    const bool bounce = started_ && size < turn_size / Sum(2);
-    if (bounce) {
+    if (started_ && (turns < 1 || (off < Sum(0) ? -off : off) > turn_size / Sum(4))) {
       accumulate(sample, kOne);
       ++open_.bounces;
+      break_off_if_endless();
       return Pulse::kBounce;
     }
     accumulate(sample, before);
     const Pulse pulse = started_ ? Pulse::kTurn : Pulse::kFirst;
     if (started_) {
       closed_ = open_;
-      closed_.turns = static_cast<int>((size + turn_size / Sum(2)) / turn_size);
+      closed_.turns = turns;
     }
     const bool still_saturated = is_saturated(sample);
     open_ = Revolution<C>{};
@@ -123,6 +140,7 @@ class RevolutionAverage {
   /// Forgets the open turn: the axis was not followed for a while.
   void restart() {
     open_ = Revolution<C>{};
+    closed_.turns = 0;  // the next turn may have another speed
     started_ = false;
   }
 
@@ -136,19 +154,29 @@ class RevolutionAverage {
   }
 
  private:
+  /// The whole number nearest to size / unit; 0 when that is not to be told.
+  static int whole(const Sum& size, const Sum& unit) {
+    const bool countable = unit > Sum(0) && size / unit < Sum(32767);
+    return countable ? static_cast<int>((size + unit / Sum(2)) / unit) : 0;
+  }
+  /// Without a pulse for so many samples that sums could overflow: a new turn begins with the next one.
+  void break_off_if_endless() {
+    if (open_.samples >= Sum(32767) * kOne) restart();
+  }
   void accumulate(const UnitOutput<C>& sample, Sum share) {
     for (std::size_t i = 0; i < sample.size(); ++i) open_.sum[i] += static_cast<Sum>(sample[i]) * share;
     open_.samples += share;
   }
   [[nodiscard]] bool is_saturated(const UnitOutput<C>& sample) const {
     const C z = sample[axial_];
-    return axial_range_ > C(0) && (z >= axial_range_ || z <= -axial_range_);
+    return axial_range_ > C(0) && (z >= near_range_ || z <= -near_range_);
   }
   void look_at_range(const UnitOutput<C>& sample) { open_.saturated = open_.saturated || is_saturated(sample); }
 
   std::size_t axial_;
   Sum full_turn_;
   C axial_range_;
+  C near_range_;  // a reading within half a per cent of the range is at it
   Revolution<C> open_;
   Revolution<C> closed_;
   bool started_ = false;

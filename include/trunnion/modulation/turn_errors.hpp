@@ -113,10 +113,14 @@ class TurnErrors {
     h(kScale + (position == UnitPosition::kFirst ? 0 : 1)) = rate;
     return h;
   }
+  /// A value six sigmas off is none of this model's: a pulse that was none, a body that shook.
   void update(const StateVector& h, const T& value, const T& variance) {
     const StateVector Ph = P_ * h;
-    const StateVector k = Ph / (h.dot(Ph) + variance);
-    x_ += k * (value - h.dot(x_));
+    const T total = h.dot(Ph) + variance;
+    const T innovation = value - h.dot(x_);
+    if (!(total > T(0)) || !(innovation * innovation <= T(36) * total)) return;
+    const StateVector k = Ph / total;
+    x_ += k * innovation;
     P_ -= k * Ph.transpose();
     P_ = (T(0.5) * (P_ + P_.transpose())).eval();
   }

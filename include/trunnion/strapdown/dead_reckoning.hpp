@@ -80,7 +80,7 @@ class WheelDeadReckoning {
       rest(mean, w);
       return Status::kOk;
     }
-    const bool saturated = wheel_.axle_range > T(0) && abs_of(mean.w.z()) >= wheel_.axle_range;
+    const bool saturated = wheel_.axle_range > T(0) && abs_of(mean.w.z()) >= T(0.995) * wheel_.axle_range;
     state_ = saturated ? WheelState::kSaturated : WheelState::kRolling;
     roll(mean, w);
     return Status::kOk;
@@ -101,6 +101,7 @@ class WheelDeadReckoning {
 
  private:
   static constexpr double kRestRate = 0.1;      // rad/s: slower is at rest ...
+  static constexpr double kRestForce = 2.0;     // m/s^2: gravity does not turn by more, and nobody shakes it
   static constexpr double kRestTime = 0.5;      // s, ... after so long
   static constexpr double kRestMemory = 5.0;    // s, of the biases read at rest
   static constexpr double kLearnRate = 1.0;     // rad/s: slower turning teaches nothing
@@ -139,7 +140,9 @@ class WheelDeadReckoning {
 
   /// The first second of rest.
   void settle(const InertialSample<T>& mean) {
-    const bool moved = settled_ > T(0) && abs_of(mean.w.z() - first_.w.z()) > T(kRestRate);
+    // a wheel that rolls evenly has a steady rate too, but gravity goes round in it
+    const bool moved = settled_ > T(0) && (abs_of(mean.w.z() - first_.w.z()) > T(kRestRate) ||
+                                           (across(mean.f) - across(first_.f)).squared() > T(kRestForce * kRestForce));
     if (settled_ == T(0) || moved) {
       first_ = mean;
       settled_ = T(0);
