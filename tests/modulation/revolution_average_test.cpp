@@ -224,11 +224,11 @@ TEST(RevolutionAverage, NoticesMissedAndBouncingPulses) {
 }
 
 TEST(RevolutionAverage, SaysWhenTheAxialGyroSaturated) {
-  RevolutionAverage<std::int16_t> average(2, 62832, 32767);
+  RevolutionAverage<std::int16_t> average(2, 131072, 32767);
   UnitOutput<std::int16_t> fine{};
-  fine[2] = 16000;
+  fine[2] = 32000;
   UnitOutput<std::int16_t> pinned = fine;
-  pinned[2] = -32767;
+  pinned[2] = 32767;
   EXPECT_EQ(average.add_with_pulse(fine, 0), Pulse::kFirst);
   average.add(fine);
   average.add(fine);
