@@ -245,6 +245,7 @@ void run(const CLI::App& app, Options o) {
 template <class V>
 std::vector<std::string> names(const std::map<std::string, V>& values) {
   std::vector<std::string> keys;
+  keys.reserve(values.size());
   for (const auto& [key, value] : values) keys.push_back(key);
   return keys;
 }

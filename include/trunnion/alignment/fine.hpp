@@ -127,13 +127,13 @@ class FineAlignment {
     H.template block<3, 3>(0, kVelocityError).setIdentity();
     H.template block<3, 3>(0, kGyroBias) = C_nb * skew<T>(lever_arm_);
     innovation_ = state.velocity - base_velocity_ - swing;
-    const Eigen::Matrix<T, 15, 3> PHt = P_ * H.transpose();
-    Mat3<T> S = H * PHt;
+    const Eigen::Matrix<T, 15, 3> cross_covariance = P_ * H.transpose();
+    Mat3<T> S = H * cross_covariance;
     S.diagonal().array() += noise_.velocity * noise_.velocity;
     const Mat3<T> S_inverse = S.inverse();
     strangeness_ += (innovation_.dot(S_inverse * innovation_) / T(3) - strangeness_) / T(32);
     moved_ = moved_ || strangeness_ > T(kStrange);
-    const Eigen::Matrix<T, 15, 3> K = PHt * S_inverse;
+    const Eigen::Matrix<T, 15, 3> K = cross_covariance * S_inverse;
     const Eigen::Matrix<T, 15, 1> found = K * innovation_;
     const ErrorMatrix<T> left = ErrorMatrix<T>::Identity() - K * H;  // Joseph's form
     P_ = left * P_ * left.transpose() + noise_.velocity * noise_.velocity * K * K.transpose();

@@ -62,12 +62,12 @@ class SlowStates {
     Eigen::Matrix<T, 2, 8> H;
     H << (T(1) + dr) * cosine - di * sine, (T(1) + dr) * sine + di * cosine, T(1), T(0), r, T(0), v.x(), v.y(),
         (dr - T(1)) * sine + di * cosine, (T(1) - dr) * cosine + di * sine, T(0), T(1), T(0), r, -v.y(), v.x();
-    const Eigen::Matrix<T, 8, 2> PHt = P_ * H.transpose();
-    Eigen::Matrix<T, 2, 2> S = H * PHt;
+    const Eigen::Matrix<T, 8, 2> cross_covariance = P_ * H.transpose();
+    Eigen::Matrix<T, 2, 2> S = H * cross_covariance;
     S.diagonal().array() += noise_.sample * noise_.sample;
-    const Eigen::Matrix<T, 8, 2> K = PHt * S.inverse();
+    const Eigen::Matrix<T, 8, 2> K = cross_covariance * S.inverse();
     x_ += K * (m - expected);
-    P_ -= K * PHt.transpose();
+    P_ -= K * cross_covariance.transpose();
     P_ = (T(0.5) * (P_ + P_.transpose())).eval();
   }
 

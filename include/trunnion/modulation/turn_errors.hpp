@@ -115,13 +115,13 @@ class TurnErrors {
   }
   /// A value six sigmas off is none of this model's: a pulse that was none, a body that shook.
   void update(const StateVector& h, const T& value, const T& variance) {
-    const StateVector Ph = P_ * h;
-    const T total = h.dot(Ph) + variance;
+    const StateVector cross_covariance = P_ * h;
+    const T total = h.dot(cross_covariance) + variance;
     const T innovation = value - h.dot(x_);
     if (!(total > T(0)) || !(innovation * innovation <= T(36) * total)) return;
-    const StateVector k = Ph / total;
+    const StateVector k = cross_covariance / total;
     x_ += k * innovation;
-    P_ -= k * Ph.transpose();
+    P_ -= k * cross_covariance.transpose();
     P_ = (T(0.5) * (P_ + P_.transpose())).eval();
   }
 
