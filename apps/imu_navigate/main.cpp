@@ -166,6 +166,7 @@ void check(const CLI::App& app, const Options& o) {
   if (o.align != "fine" && given("--lever-arm-m")) refuse("--lever-arm-m is of --align fine");
   if (given("--heading-deg") && (o.align == "compass" || o.align == "fine" || o.align == "swinging"))
     refuse("--heading-deg: --align " + o.align + " finds it");
+  if (given("--plot") && !given("--output")) refuse("--plot draws the table: give --output too");
   std::vector<std::string> outputs;
   for (const std::string& path : {o.output, o.log, o.kml, o.summary}) {
     if (path.empty()) continue;
@@ -182,7 +183,6 @@ void run(const CLI::App& app, Options o) {
   check(app, o);
   keep_inputs(o);
   const Modulation modulation = kModulations.at(o.modulation);
-  if (!o.plots.empty() && o.output.empty()) throw Error(ExitCode::kUsage, "--plot draws the table: give --output too");
   std::optional<Truth> truth;
   if (!o.truth.empty()) truth.emplace(o.truth, o.truth_offset);
   Start start;

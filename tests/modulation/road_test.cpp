@@ -300,7 +300,7 @@ TEST(RoadTest, TheWheelIsBestAndTheCuresHelp) {
                       [&](std::uint64_t s) { return platform(Mount::kLongitudinal, along_back, body, true, s); });
   const Course rolling = course_of(Mount::kWheel, steady);
   const double hub = mean_over_seeds("right rear wheel", [&](std::uint64_t s) { return wheel(rolling, s); });
-  EXPECT_LT(hub, 0.02 * 2000.0);
+  EXPECT_LT(hub, 0.0125 * 2000.0);
   EXPECT_LT(hub, longitudinal);
   EXPECT_LT(hub, vertical);
   EXPECT_LT(vertical_cured, vertical);
