@@ -99,8 +99,8 @@ BodyMotionSeries by_index(const Recording& recording, double axial_range) {
     throw Error(ExitCode::kInput, std::to_string(counts.stray_pulses) +
                                       " of the index pulses do not come with a turn of the gyro about z, " +
                                       std::to_string(counts.turns) + " do: another axis, sign or unit?");
-  check_axis(by_gyro, by_pulses, "the index pulses");
   if (intervals.empty()) throw Error(ExitCode::kInput, "no whole turn between the index pulses of the recording");
+  check_axis(by_gyro, by_pulses, "the index pulses");
   BodyMotionSeries series = even(intervals, recording.period);
   for (double& stamp : series.stamp) stamp += origin;
   series.stray_pulses = counts.stray_pulses;

@@ -33,7 +33,7 @@ class Collector final : public SampleSink {
   Collector(std::string path, Recording& into) : path_(std::move(path)), into_(into) {}
 
   void imu(std::int64_t utime, const InertialSample<double>& sample) override {
-    if (!accepted(clock_, utime, "IMU", samples_.empty())) return;
+    if (!accepted(clock_, utime, "IMU")) return;
     if (clock_forgets_first_) {
       samples_.clear();
       utimes_.clear();
@@ -42,7 +42,7 @@ class Collector final : public SampleSink {
     samples_.push_back(sample);
   }
   void encoder(std::int64_t utime, double azimuth, double) override {
-    if (!accepted(axis_clock_, utime, "encoder", angles_.empty())) return;
+    if (!accepted(axis_clock_, utime, "encoder")) return;
     if (clock_forgets_first_) angles_.clear();
     angles_.push_back({utime, azimuth});
   }
@@ -54,13 +54,13 @@ class Collector final : public SampleSink {
   std::vector<std::int64_t> pulses_;
 
  private:
-  bool accepted(ChannelClock& clock, std::int64_t utime, const char* channel, bool first) {
+  bool accepted(ChannelClock& clock, std::int64_t utime, const char* channel) {
     clock_forgets_first_ = false;
     switch (clock.judge(utime)) {
       case ChannelClock::Verdict::kNext:
         return true;
       case ChannelClock::Verdict::kNextAndFirstWasStray:
-        clock_forgets_first_ = !first;
+        clock_forgets_first_ = true;
         ++into_.strays;
         return true;
       case ChannelClock::Verdict::kDuplicate:

@@ -228,44 +228,21 @@ Track navigate(const BodyMotionSeries& motion, const Start& start, const std::st
   NavigationState<double> state = place_of(start);
   state.attitude = aligned.q_nb;
   track.epoch.push_back({motion.stamp[count] - motion.period, state});
-  const auto run = [&](auto kind) {
-    fly<typename decltype(kind)::Algorithm>(motion, state, aligned.gyro_bias, count, output_hz, track);
-  };
-  struct Previous {
-    using Algorithm = PreviousSample<double>;
-  };
-  struct Two {
-    using Algorithm = MultiSample<double, 2>;
-  };
-  struct Three {
-    using Algorithm = MultiSample<double, 3>;
-  };
-  struct Four {
-    using Algorithm = MultiSample<double, 4>;
-  };
-  struct Exact4 {
-    using Algorithm = ExactSamples<double, 4>;
-  };
-  struct Exact6 {
-    using Algorithm = ExactSamples<double, 6>;
-  };
-  struct Exact8 {
-    using Algorithm = ExactSamples<double, 8>;
-  };
+  const auto run = [&](auto kind) { fly<decltype(kind)>(motion, state, aligned.gyro_bias, count, output_hz, track); };
   if (algorithm == "2")
-    run(Two{});
+    run(MultiSample<double, 2>{});
   else if (algorithm == "3")
-    run(Three{});
+    run(MultiSample<double, 3>{});
   else if (algorithm == "4")
-    run(Four{});
+    run(MultiSample<double, 4>{});
   else if (algorithm == "exact4")
-    run(Exact4{});
+    run(ExactSamples<double, 4>{});
   else if (algorithm == "exact6")
-    run(Exact6{});
+    run(ExactSamples<double, 6>{});
   else if (algorithm == "exact8")
-    run(Exact8{});
+    run(ExactSamples<double, 8>{});
   else
-    run(Previous{});
+    run(PreviousSample<double>{});
   return track;
 }
 

@@ -4,8 +4,7 @@
 /// Fine alignment: a navigator whose errors a Kalman filter takes out, because a point of the base is known to stand
 /// still, or to move at a velocity that somebody else measures.
 ///
-///   z = v - v_0 - C_nb (w_nb_b x l) = dv + phi x V + C_nb (l x b_g) + noise,   V = C_nb (w_nb_b x l)            ...
-///   (1)
+///   z = v - v_0 - C_nb (w_nb_b x l) = dv + phi x V + C_nb (l x b_g) + noise,   V = C_nb (w_nb_b x l)   ... (1)
 ///
 /// v_0: of the point, none unless told; l: from it to the unit [b]; states and dynamics: strapdown/error_dynamics.hpp.
 /// What is found goes into the navigator at once, the biases into its inputs. Innovations that stay beyond their sigmas
@@ -60,8 +59,8 @@ class FineAlignment {
   void move(const Vec3<T>& velocity) { base_velocity_ = velocity; }
 
   /// Takes the next sample. @return kOutOfRange, and nothing changed, for one that is not finite or turns by more than
-  /// a radian; kMovingBase from
-  /// the first time on that the base moves: what was found since is not to be believed
+  /// a radian; kMovingBase from the first time on that the base moves:
+  /// what was found since is not to be believed
   Status add(const Increment<T>& sample) {
     Increment<T> corrected = sample;
     corrected.angle -= period_ * gyro_bias_;

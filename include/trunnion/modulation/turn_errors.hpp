@@ -7,9 +7,8 @@
 /// Frame p turns with the unit, z is the axis; the unit s sits in it in the first position as it is (C_ps = I), in the
 /// second turned by 90 deg about x (s-y lies along the axis). A turn at rate W gives, in position p:
 ///
-///   across   mean x, y of p        = b_x,y + t_p,x,y r                     r = W of gyros, W^2 of accelerometers ...
-///   (1) along    mean z - W - reference = b_z + s_p W - c                                                         ...
-///   (2)
+///   across: mean x, y of p = b_x,y + t_p,x,y r,   r = W of gyros, W^2 of accelerometers            ... (1)
+///   along:  mean z - W - reference = b_z + s_p W - c                                               ... (2)
 ///
 /// t: tilt of the sensing plane against the axis (gyros) or lever arm (accelerometers); s: axial scale error, zero for
 /// accelerometers; c: what else the reference has. Whoever has an auxiliary unit on the base takes it for the

@@ -6,7 +6,7 @@
 ///   S(f) = K / f (one-sided) between 1/(2 pi t_0 4^n) and 1/(2 pi t_0),   variance of each = K ln 4          ... (1)
 ///
 /// The flat of the Allan deviation, the bias instability of a data sheet, is B = sqrt(2 ln 2 K): IEEE Std 952-2020,
-/// C.1.2. At this ratio the sum ripples about (1) by 0.3 %.
+/// C.1.2.
 
 #pragma once
 

@@ -266,8 +266,8 @@ class Navigator {
     velocity_.add(dv);
     q_en_.add(product(q_en, small_turn(dt * w_en_)));  // a millionth of a turn: its length is kept by the sum
 
-    // of long updates the second order too, for a force that is even in n; float would not see it. Here and anew, since
-    // the processor's registers are full above: 12 instructions an update
+    // of long updates the second order too, for a force that is even in n; float would not see it. Here and anew: above
+    // it costs registers
     if constexpr (!kNarrow) {
       if (long_) {
         const Triple again = rotate(q_nb.w, q_nb.v, strapdown_detail::triple(motion.velocity));
