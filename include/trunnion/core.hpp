@@ -5,7 +5,9 @@
 
 #pragma once
 
+#include "trunnion/core/binary_angle.hpp"
 #include "trunnion/core/earth.hpp"
+#include "trunnion/core/fixed.hpp"
 #include "trunnion/core/linear.hpp"
 #include "trunnion/core/rotation.hpp"
 #include "trunnion/core/status.hpp"

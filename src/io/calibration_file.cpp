@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "strict_yaml.hpp"
+#include "trunnion/io/fault.hpp"
 
 namespace trunnion::io {
 namespace {
@@ -61,6 +62,14 @@ Json rig_tree(const CalibrationValues& v, const std::vector<std::string>& mounts
   return tree;
 }
 
+Json temperature_tree(const ThermalBias<double>& thermal) {
+  return {{"reference_deg_c", thermal.reference},
+          {"gyroscope_bias_rad_s_per_k", list(thermal.linear.w)},
+          {"gyroscope_bias_rad_s_per_k2", list(thermal.quadratic.w)},
+          {"accelerometer_bias_m_s2_per_k", list(thermal.linear.f)},
+          {"accelerometer_bias_m_s2_per_k2", list(thermal.quadratic.f)}};
+}
+
 Json geometry_tree(const Triad<double>& triad) {
   const TriadGeometry<double> parts = triad.geometry();
   return {{"scale", list(parts.scale)},
@@ -75,6 +84,7 @@ Json tree_of(const CalibrationFile& file) {
   tree["imu"] = {{"model", file.model}, {"serial", file.serial}};
   tree["gyroscope"] = unit_tree(r.value.unit, false, "gyroscope");
   tree["accelerometer"] = unit_tree(r.value.unit, false, "accelerometer");
+  if (!r.value.unit.thermal.is_zero()) tree["temperature"] = temperature_tree(r.value.unit.thermal);
   tree["sigma"] = {{"gyroscope", unit_tree(r.sigma.unit, true, "gyroscope")},
                    {"accelerometer", unit_tree(r.sigma.unit, true, "accelerometer")}};
   if (r.has_rig) {
@@ -160,6 +170,16 @@ void read_triads(const StrictYaml& root, bool sigma, InertialUnit<double>& unit)
   }
 }
 
+void read_temperature(const StrictYaml& node, ThermalBias<double>& thermal) {
+  node.only({"reference_deg_c", "gyroscope_bias_rad_s_per_k", "gyroscope_bias_rad_s_per_k2",
+             "accelerometer_bias_m_s2_per_k", "accelerometer_bias_m_s2_per_k2"});
+  thermal.reference = node.at("reference_deg_c").number_in(-273.15, 1000.0);
+  thermal.linear = {node.at("gyroscope_bias_rad_s_per_k").vector(), node.at("accelerometer_bias_m_s2_per_k").vector()};
+  if (node.has("gyroscope_bias_rad_s_per_k2")) thermal.quadratic.w = node.at("gyroscope_bias_rad_s_per_k2").vector();
+  if (node.has("accelerometer_bias_m_s2_per_k2"))
+    thermal.quadratic.f = node.at("accelerometer_bias_m_s2_per_k2").vector();
+}
+
 void read_rig(const StrictYaml& rig, bool sigma, CalibrationValues& v, std::vector<std::string>& mounts) {
   const StrictYaml::Scalar scalar = sigma ? &StrictYaml::sigma : &StrictYaml::number;
   const auto number = [&](const StrictYaml& node) { return (node.*scalar)(); };
@@ -204,8 +224,8 @@ std::string to_json(const CalibrationFile& file) {
 
 CalibrationFile read_calibration_file(const std::string& path) {
   const StrictYaml root = StrictYaml::load(path, "trunnion-calibration/1");
-  root.only({"format", "imu", "gyroscope", "accelerometer", "sigma", "rig", "geometry", "recordings", "gauge", "fit",
-             "verdict", "out_of_limits", "provenance"});
+  root.only({"format", "imu", "gyroscope", "accelerometer", "temperature", "sigma", "rig", "geometry", "recordings",
+             "gauge", "fit", "verdict", "out_of_limits", "provenance"});
   CalibrationFile file;
   if (root.has("imu")) {
     root.at("imu").only({"model", "serial"});
@@ -214,6 +234,7 @@ CalibrationFile read_calibration_file(const std::string& path) {
   }
   CalibrationRecord& r = file.record;
   read_triads(root, false, r.value.unit);
+  if (root.has("temperature")) read_temperature(root.at("temperature"), r.value.unit.thermal);
   r.has_rig = root.has("rig");
   if (r.has_rig) read_rig(root.at("rig"), false, r.value, file.mounts);
   if (root.has("sigma")) {
@@ -250,6 +271,19 @@ CalibrationFile read_calibration_file(const std::string& path) {
     file.within_limits = verdict == "within_limits";
   }
   return file;
+}
+
+InertialUnit<double> unit_of(const CalibrationFile& file, const std::string& path, int recording) {
+  InertialUnit<double> unit = file.record.value.unit;
+  if (recording <= 0) return unit;
+  if (recording > file.record.recordings) {
+    throw input_error(path, 0, "recordings",
+                      "has " + std::to_string(file.record.recordings) + ", not " + std::to_string(recording));
+  }
+  const auto& bias = file.record.value.recording_bias[static_cast<std::size_t>(recording - 1)];
+  unit.gyro.bias = bias.w;
+  unit.accel.bias = bias.f;
+  return unit;
 }
 
 }  // namespace trunnion::io

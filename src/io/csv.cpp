@@ -99,7 +99,7 @@ class Table {
         unit = find_by_name(quantity, column.index);
       }
       if (unit == kCounts) {
-        const NominalScale& counts = quantity[0] == 'g' ? sheet.gyro_counts : sheet.accel_counts;
+        const NominalScale<double>& counts = quantity[0] == 'g' ? sheet.counts.gyro : sheet.counts.accel;
         column.si = 1.0 / counts.scale;
         column.zero = counts.zero;
       } else {

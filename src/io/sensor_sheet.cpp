@@ -12,7 +12,7 @@ namespace {
 /// One triad of the sheet; keys carry the unit: noise_<noise_unit>, and so on.
 bool read_triad(const StrictYaml& node, const std::string& range_key, double range_unit, const std::string& noise_key,
                 double noise_unit, const std::string& wander_key, double wander_unit, const std::string& scale_key,
-                double& range, TriadNoise& noise, NominalScale& counts) {
+                double& range, TriadNoise& noise, NominalScale<double>& counts) {
   node.only({range_key, noise_key, wander_key, "bias_correlation_time_s", scale_key, "zero_counts"});
   if (node.has(range_key)) range = node.at(range_key).positive() * range_unit;
   if (node.has(scale_key)) counts.scale = node.at(scale_key).number();
@@ -37,10 +37,10 @@ SensorSheet read_sensor_sheet(const std::string& path) {
   if (root.has("rate_hz")) sheet.rate_hz = root.at("rate_hz").number_in(10.0, 1e5);
   const bool gyro = read_triad(root.at("gyroscope"), "range_deg_per_s", kRadPerDeg, "noise_deg_per_h_per_rt_hz",
                                kRadPerSPerDegPerH, "bias_instability_deg_per_h", kRadPerSPerDegPerH,
-                               "scale_counts_per_rad_s", sheet.gyro_range, sheet.noise.gyro, sheet.gyro_counts);
+                               "scale_counts_per_rad_s", sheet.gyro_range, sheet.noise.gyro, sheet.counts.gyro);
   const bool accel = read_triad(root.at("accelerometer"), "range_g", kStandardGravity, "noise_ug_per_rt_hz",
                                 kMetresPerS2PerMicroG, "bias_instability_ug", kMetresPerS2PerMicroG,
-                                "scale_counts_per_m_s2", sheet.accel_range, sheet.noise.accel, sheet.accel_counts);
+                                "scale_counts_per_m_s2", sheet.accel_range, sheet.noise.accel, sheet.counts.accel);
   if (gyro != accel)
     root.at(gyro ? "accelerometer" : "gyroscope")
         .fail("states no noise, while the other triad does: state both or neither");

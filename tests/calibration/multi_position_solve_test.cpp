@@ -226,8 +226,8 @@ class ImuTk : public testing::Test {
     if (!std::filesystem::exists(folder / "xsens_gyro.mat"))
       GTEST_SKIP() << "no real recordings: " << folder << " is absent";
     io::SensorSheet sheet;
-    sheet.gyro_counts = {4770.0, 32768.0};
-    sheet.accel_counts = {414.0, 32768.0};
+    sheet.counts.gyro = {4770.0, 32768.0};
+    sheet.counts.accel = {414.0, 32768.0};
     RestsAndTurns parts("imu_tk");
     std::string a;
     std::string b;

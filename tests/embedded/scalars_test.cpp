@@ -40,7 +40,7 @@ template Vec3<float> quaternion_log<float>(const Quaternion<float>&);
 template Vec3<Jet> quaternion_log<Jet>(const Quaternion<Jet>&);
 
 static_assert(std::is_trivially_destructible_v<UnitCorrection<float>>);
-static_assert(sizeof(InertialUnit<float>) == 45 * sizeof(float));
+static_assert(sizeof(InertialUnit<float>) == 58 * sizeof(float));
 
 namespace {
 

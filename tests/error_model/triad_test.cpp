@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <random>
 
 #include "trunnion/error_model/inertial_unit.hpp"
@@ -95,6 +96,47 @@ TEST(InertialUnit, CorrectTakesGSensitivityOutWithTheCorrectedForce) {
     EXPECT_LT((output.w - input.w).norm(), 1e-13);
     EXPECT_LT((output.f - input.f).norm(), 1e-13);
   }
+}
+
+// Readings in SI and raw counts, float and double, at a temperature: one law, what distort() did is undone.
+TEST(UnitCorrection, UndoesCountsAndTemperature) {
+  Draw draw(7);
+  for (int i = 0; i < 300; ++i) {
+    InertialUnit<double> unit;
+    unit.gyro.M = draw.matrix(0.02);
+    unit.accel.M = draw.matrix(0.02);
+    unit.gyro.bias = draw.vector(0.1);
+    unit.accel.bias = draw.vector(0.5);
+    unit.g_sensitivity = draw.matrix(1e-4);
+    if (i % 2 == 1) unit.gyro.cubic = draw.vector(1e-7);
+    unit.thermal = {20.0, {draw.vector(1e-4), draw.vector(1e-3)}, {draw.vector(1e-6), draw.vector(1e-5)}};
+    const UnitScale<double> counts{{938.7, 12.0}, {208.8, -7.0}};
+    const double temperature = 20.0 + draw(50.0);
+    const InertialSample<double> input{draw.vector(8.0), draw.vector(40.0)};
+    const InertialSample<double> reading = unit.distort(input, temperature);
+    const InertialSample<double> raw{reading.w * 938.7 + Vec3<double>::Constant(12.0),
+                                     reading.f * 208.8 + Vec3<double>::Constant(-7.0)};
+    const InertialSample<double> found = UnitCorrection<double>(unit, counts).correct(raw, temperature);
+    EXPECT_LT((found.w - input.w).norm() + (found.f - input.f).norm(), 1e-12 * 60.0);
+    const InertialSample<float> in_float =
+        UnitCorrection<float>(unit, counts)
+            .correct({raw.w.cast<float>(), raw.f.cast<float>()}, static_cast<float>(temperature));
+    EXPECT_LT((in_float.w.cast<double>() - input.w).norm(), 1e-6 * 8.0);
+    EXPECT_LT((in_float.f.cast<double>() - input.f).norm(), 1e-6 * 40.0);
+  }
+}
+
+TEST(UnitCorrection, SaysThatAReadingIsNotFinite) {
+  const UnitCorrection<float> correction{InertialUnit<float>()};
+  for (int i = 0; i < 6; ++i) {
+    for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
+                            -std::numeric_limits<float>::infinity()}) {
+      InertialSample<float> reading;
+      (i < 3 ? reading.w(i) : reading.f(i - 3)) = bad;
+      EXPECT_EQ(correction.checked(reading).status(), Status::kOutOfRange);
+    }
+  }
+  EXPECT_TRUE(correction.checked({Vec3<float>(1, 2, 3), Vec3<float>(4, 5, 6)}).ok());
 }
 
 }  // namespace

@@ -68,8 +68,8 @@ TEST_F(Csv, AMapServesAFileWithoutHeader) {
   for (const char* q : {"gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z"})
     map[q] = {"", index++, "counts"};
   SensorSheet sheet;
-  sheet.gyro_counts = {100.0, 32768.0};
-  sheet.accel_counts = {10.0, 0.0};
+  sheet.counts.gyro = {100.0, 32768.0};
+  sheet.counts.accel = {10.0, 0.0};
   read("5000 32868 32768 32668 10 20 98\n", map, sheet);
   EXPECT_EQ(collect_.stamps[0], 5000);
   EXPECT_EQ(collect_.samples[0].w, Vec3<double>(1, 0, -1));

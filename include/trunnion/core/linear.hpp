@@ -6,6 +6,13 @@
 
 #pragma once
 
+#include "trunnion/core/inline.hpp"
+
+// Eigen's element access too: docs/how-to/link-it-into-your-firmware.md has the counts.
+#if defined(__GNUC__) && defined(__OPTIMIZE_SIZE__) && !defined(EIGEN_STRONG_INLINE)
+#define EIGEN_STRONG_INLINE TRUNNION_INLINE
+#endif
+
 #include <Eigen/Core>
 #include <Eigen/LU>
 

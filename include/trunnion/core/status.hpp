@@ -11,9 +11,15 @@ namespace trunnion {
 
 enum class Status : std::uint8_t {
   kOk,
-  kNotObservable,  ///< the data or the geometry cannot decide the answer
-  kOutOfRange,     ///< an argument outside its stated range
-  kMovingBase,     ///< what should stand still, or swing about a point, goes somewhere
+  kNotObservable,   ///< the data or the geometry cannot decide the answer
+  kOutOfRange,      ///< an argument outside its stated range
+  kMovingBase,      ///< what should stand still, or swing about a point, goes somewhere
+  kSaturated,       ///< a reading at the end of its range
+  kStuck,           ///< a channel that has not moved for as long as none can
+  kTimeOut,         ///< what comes once a turn has not come
+  kDamaged,         ///< a block whose check does not fit
+  kOtherVersion,    ///< a block of another version of its format
+  kOtherByteOrder,  ///< a block written for a machine of the other byte order
 };
 
 /// A value, or the reason why there is none. @code if (auto r = f(); r.ok()) use(r.value()); @endcode

@@ -3,15 +3,20 @@
 /// @file
 /// Deterministic errors of an inertial unit: a gyro triad that feels specific force, and an accelerometer triad.
 ///
-///   y_g = (I + M_g) w + b_g + N w^o3 + Q_g w^o2 + G f                ... (1)
-///   y_a = (I + M_a) f + b_a + Q f^o2 + N_a f^o3                      ... (2)
-///   correction: f from (2) first, then w from y_g - G f              ... (3)
+///   y_g = (I + M_g) w + b_g(T) + N w^o3 + Q_g w^o2 + G f             ... (1)
+///   y_a = (I + M_a) f + b_a(T) + Q f^o2 + N_a f^o3                   ... (2)
+///   b(T) = b + b_1 (T - T_0) + b_2 (T - T_0)^2                       ... (3)
+///   correction: f from (2) first, then w from y_g - G f              ... (4)
 ///
-/// w = w_ib_b [rad/s], f = f_b [m/s^2], G: g-sensitivity of the gyros [(rad/s)/(m/s^2)].
+/// w = w_ib_b [rad/s], f = f_b [m/s^2], G: g-sensitivity of the gyros [(rad/s)/(m/s^2)], T: temperature [degC].
 /// IEEE Std 1554-2005; docs/theory/calibration.md, eq. 1-5.
 
 #pragma once
 
+#include <array>
+
+#include "trunnion/core/status.hpp"
+#include "trunnion/core/triple.hpp"
 #include "trunnion/error_model/triad.hpp"
 
 namespace trunnion {
@@ -23,37 +28,155 @@ struct InertialSample {
   Vec3<T> f = Vec3<T>::Zero();
 };
 
+/// The outputs of a unit as they come: x y z of the gyros, then x y z of the accelerometers.
+template <class C>
+using UnitOutput = std::array<C, 6>;
+
+/// b_1 and b_2 of eq. (3): zero where a unit is not calibrated over temperature.
+template <class T>
+struct ThermalBias {
+  T reference = T(0);           ///< T_0 [degC]
+  InertialSample<T> linear;     ///< [unit of the sensor / K]
+  InertialSample<T> quadratic;  ///< [unit of the sensor / K^2]
+
+  [[nodiscard]] bool is_zero() const {
+    return linear.w.isZero(T(0)) && linear.f.isZero(T(0)) && quadratic.w.isZero(T(0)) && quadratic.f.isZero(T(0));
+  }
+};
+
 template <class T>
 struct InertialUnit {
   Triad<T> gyro;
   Triad<T> accel;
   Mat3<T> g_sensitivity = Mat3<T>::Zero();
+  ThermalBias<T> thermal;
 
-  /// What the unit reads for the true input, eq. (1) and (2).
+  /// What the unit reads for the true input at T_0, eq. (1) and (2).
   [[nodiscard]] InertialSample<T> distort(const InertialSample<T>& input) const {
     return {gyro.distort(input.w) + g_sensitivity * input.f, accel.distort(input.f)};
   }
+  /// The same at @p temperature [degC].
+  [[nodiscard]] InertialSample<T> distort(const InertialSample<T>& input, const T& temperature) const {
+    const T t = temperature - thermal.reference;
+    const InertialSample<T> reading = distort(input);
+    return {reading.w + t * (thermal.linear.w + t * thermal.quadratic.w),
+            reading.f + t * (thermal.linear.f + t * thermal.quadratic.f)};
+  }
 };
 
-/// Undoes an InertialUnit. Holds the two inverses, so that a sample costs no division.
+/// What a raw count means: reading = (count - zero) / scale.
+template <class T>
+struct NominalScale {
+  T scale = T(1);  ///< counts per SI unit; not zero
+  T zero = T(0);   ///< counts at zero input
+};
+
+/// Of both triads. The default is a unit that reads in SI.
+template <class T>
+struct UnitScale {
+  NominalScale<T> gyro;
+  NominalScale<T> accel;
+};
+
+/// Undoes an InertialUnit: readings in SI, or raw counts. Inverses, scales and biases are folded, so that a sample
+/// costs no division, and of a linear unit no more than two matrices and the g-sensitivity:
+///
+///   f = A_a y_a + c_a(T) - A_a' n_a(f),   w = A_g y_g + c_g(T) - H f - A_g' n_g(w)       ... (5)
+///
+/// A' = (I + M)^-1, A = A' / scale, c = -A' b - A zero, H = A_g' G, n: the nonlinearity, by Triad's two steps.
 template <class T>
 class UnitCorrection {
  public:
-  explicit UnitCorrection(const InertialUnit<T>& unit)
-      : unit_(unit), gyro_inverse_(unit.gyro.matrix().inverse()), accel_inverse_(unit.accel.matrix().inverse()) {}
+  struct Axes {
+    kernel::Matrix<T> A;
+    kernel::Triple<T> c, c_1, c_2;  // over temperature
+  };
+  /// Of one triad's nonlinearity.
+  struct Bend {
+    kernel::Matrix<T> A;
+    kernel::Triple<T> quadratic, cubic;
+  };
+  /// Plain numbers, as a flash block or a generated header holds them.
+  struct Coefficients {
+    Axes accel, gyro;
+    kernel::Matrix<T> H;
+    Bend accel_bend, gyro_bend;
+    T reference;  // T_0
+    T is_linear;  // 1: both bends are zero
+  };
 
-  /// The true input for a reading, eq. (3).
+  constexpr explicit UnitCorrection(const Coefficients& coefficients) : k_(coefficients) {}
+
+  /// @p unit, and what its counts mean, in a scalar as wide as T or wider: folded there, then rounded once.
+  template <class U>
+  explicit UnitCorrection(const InertialUnit<U>& unit, const UnitScale<U>& counts = UnitScale<U>()) {
+    const Mat3<U> accel = unit.accel.matrix().inverse();
+    const Mat3<U> gyro = unit.gyro.matrix().inverse();
+    k_.accel = axes<U>(accel, unit.accel.bias, unit.thermal.linear.f, unit.thermal.quadratic.f, counts.accel);
+    k_.gyro = axes<U>(gyro, unit.gyro.bias, unit.thermal.linear.w, unit.thermal.quadratic.w, counts.gyro);
+    k_.H = kernel::matrix<T>((gyro * unit.g_sensitivity).template cast<T>());
+    k_.accel_bend = bend<U>(accel, unit.accel);
+    k_.gyro_bend = bend<U>(gyro, unit.gyro);
+    k_.reference = static_cast<T>(unit.thermal.reference);
+    k_.is_linear = unit.accel.is_linear() && unit.gyro.is_linear() ? T(1) : T(0);
+  }
+
+  [[nodiscard]] constexpr const Coefficients& coefficients() const { return k_; }
+
+  /// The true input for a reading at T_0, eq. (5).
   [[nodiscard]] InertialSample<T> correct(const InertialSample<T>& reading) const {
-    InertialSample<T> input;
-    input.f = unit_.accel.correct(reading.f, accel_inverse_);
-    input.w = unit_.gyro.correct(reading.w - unit_.g_sensitivity * input.f, gyro_inverse_);
+    return corrected(reading, k_.accel.c, k_.gyro.c);
+  }
+  /// The same at @p temperature [degC].
+  [[nodiscard]] InertialSample<T> correct(const InertialSample<T>& reading, const T& temperature) const {
+    const T t = temperature - k_.reference;
+    return corrected(reading, k_.accel.c + t * (k_.accel.c_1 + t * k_.accel.c_2),
+                     k_.gyro.c + t * (k_.gyro.c_1 + t * k_.gyro.c_2));
+  }
+  /// For readings that may be damaged. @return kOutOfRange when one is not finite
+  [[nodiscard]] Result<InertialSample<T>> checked(const InertialSample<T>& reading) const {
+    const InertialSample<T> input = correct(reading);
+    if (!kernel::is_finite(kernel::triple(input.w)) || !kernel::is_finite(kernel::triple(input.f)))
+      return Status::kOutOfRange;
     return input;
   }
 
  private:
-  InertialUnit<T> unit_;
-  Mat3<T> gyro_inverse_;
-  Mat3<T> accel_inverse_;
+  using Triple = kernel::Triple<T>;
+
+  template <class U>
+  static Axes axes(const Mat3<U>& A, const Vec3<U>& bias, const Vec3<U>& linear, const Vec3<U>& quadratic,
+                   const NominalScale<U>& counts) {
+    const auto folded = [&A](const Vec3<U>& b) { return kernel::triple<T>((A * (-b)).template cast<T>()); };
+    return {kernel::matrix<T>((A / counts.scale).template cast<T>()),
+            folded(bias + Vec3<U>::Constant(counts.zero / counts.scale)), folded(linear), folded(quadratic)};
+  }
+  template <class U>
+  static Bend bend(const Mat3<U>& A, const Triad<U>& triad) {
+    return {kernel::matrix<T>(A.template cast<T>()), kernel::triple<T>(triad.quadratic.template cast<T>()),
+            kernel::triple<T>(triad.cubic.template cast<T>())};
+  }
+
+  TRUNNION_INLINE InertialSample<T> corrected(const InertialSample<T>& reading, const Triple& c_a,
+                                              const Triple& c_g) const {
+    const Triple f_linear = c_a + k_.accel.A * kernel::triple(reading.f);
+    const Triple w_linear = c_g + k_.gyro.A * kernel::triple(reading.w);
+    if (k_.is_linear == T(1)) return {kernel::vector(w_linear - k_.H * f_linear), kernel::vector(f_linear)};
+    const Triple f = straightened(f_linear, k_.accel_bend);
+    return {kernel::vector(straightened(w_linear - k_.H * f, k_.gyro_bend)), kernel::vector(f)};
+  }
+  static Triple straightened(const Triple& linear, const Bend& bend) {
+    Triple u = linear;
+    for (int step = 0; step < Triad<T>::kCorrectionSteps; ++step) {
+      const Triple n = {u.x * u.x * (bend.quadratic.x + bend.cubic.x * u.x),
+                        u.y * u.y * (bend.quadratic.y + bend.cubic.y * u.y),
+                        u.z * u.z * (bend.quadratic.z + bend.cubic.z * u.z)};
+      u = linear - bend.A * n;
+    }
+    return u;
+  }
+
+  Coefficients k_;
 };
 
 }  // namespace trunnion

@@ -35,4 +35,8 @@ std::string to_json(const CalibrationFile& file);
 /// @throws Error (input) naming file, line and field
 CalibrationFile read_calibration_file(const std::string& path);
 
+/// The unit of a calibration, with the turn-on bias of @p recording, from 1; 0: the mean over them.
+/// @throws Error (input) when the file, read from @p path, has fewer
+InertialUnit<double> unit_of(const CalibrationFile& file, const std::string& path, int recording);
+
 }  // namespace trunnion::io

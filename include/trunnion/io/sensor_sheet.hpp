@@ -8,15 +8,10 @@
 
 #include <string>
 
+#include "trunnion/error_model/inertial_unit.hpp"
 #include "trunnion/error_model/noise.hpp"
 
 namespace trunnion::io {
-
-/// Counts of a raw output: value [SI] = (counts - zero) / scale.
-struct NominalScale {
-  double scale = 1.0;  ///< counts per SI unit
-  double zero = 0.0;   ///< counts at zero input
-};
 
 struct SensorSheet {
   std::string model;
@@ -24,9 +19,8 @@ struct SensorSheet {
   double gyro_range = 0.0;   ///< rad/s; 0: not stated
   double accel_range = 0.0;  ///< m/s^2; 0: not stated
   UnitNoise noise;
-  bool has_noise = false;  ///< both triads state their noise
-  NominalScale gyro_counts;
-  NominalScale accel_counts;
+  bool has_noise = false;    ///< both triads state their noise
+  UnitScale<double> counts;  ///< of a raw output; scale 1 where not stated
 };
 
 /// @throws Error (input) naming file, line and field

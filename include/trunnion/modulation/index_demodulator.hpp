@@ -60,7 +60,7 @@ class IndexDemodulator {
   /// A sample without a pulse; one that is not finite breaks the open turn off. @param mean over the sample, in p
   void add(const InertialSample<T>& mean) {
     if (!finite(mean)) return restart();
-    means_.add(output(mean));
+    (void)means_.add(output(mean));
     accumulate(mean, T(1));
   }
 

@@ -18,13 +18,16 @@
 /// The axial sum tells how many turns lie between two pulses: a pulse that bounces or has no business there is passed
 /// over, a missed one noticed, and the mean over two or three turns is as good as over one. It tells as long as the
 /// body itself turns about the axis by less than a quarter of the platform's speed; beyond, no pulse fits, which is not
-/// quiet. In integers, r counts in 65536ths and sums are exact.
+/// quiet. In integers, r counts in 65536ths and sums are exact; a sample costs additions alone.
 
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <type_traits>
+
+#include "trunnion/core/status.hpp"
+#include "trunnion/error_model/inertial_unit.hpp"
 
 namespace trunnion {
 
@@ -36,14 +39,10 @@ struct RevolutionSum {
 };
 template <class C>
 struct RevolutionSum<C, true> {
-  static_assert(sizeof(C) <= 4, "sums of 32-bit counts are exact for 32767 full-scale samples a turn");
+  static_assert(sizeof(C) <= 4, "sums are kept for counts of up to 32 bits");
   using Type = std::int64_t;
   static constexpr Type kOne = 65536;
 };
-
-/// The outputs of a unit, x y z of the gyros and x y z of the accelerometers.
-template <class C>
-using UnitOutput = std::array<C, 6>;
 
 template <class C>
 struct Revolution {
@@ -53,6 +52,11 @@ struct Revolution {
   int turns = 0;             ///< between the two pulses: more than one where pulses were missed
   int bounces = 0;           ///< pulses passed over within it
   bool saturated = false;    ///< the axial gyro was at its range: turns comes from the time of the turn before
+
+  /// More samples with a pulse than without: the pulse is read with the wrong polarity.
+  [[nodiscard]] bool is_index_inverted() const {
+    return static_cast<Sum>(bounces) * Sum(2) * RevolutionSum<C>::kOne > samples;
+  }
 
   /// Mean of an output over the turn, eq. (1); integers round to the nearest count. Zero before there is a turn.
   [[nodiscard]] C mean(std::size_t output) const {
@@ -74,15 +78,40 @@ enum class Pulse : std::uint8_t {
   kBounce,  ///< not within a quarter of a whole number of turns after the last: passed over
 };
 
-template <class C>
+namespace kernel {
+
+/// Written out: at -O2 and at -Os it would stay a loop.
+/// @tparam InOrder channel by channel, which costs fewest registers
+template <bool InOrder, class Sum, class C>
+TRUNNION_INLINE void add(std::array<Sum, 6>& sum, const UnitOutput<C>& sample) {
+  const auto add_one = [&sum, &sample](std::size_t i) TRUNNION_INLINE_LAMBDA {
+    sum[i] += static_cast<Sum>(sample[i]);
+    if constexpr (InOrder) TRUNNION_IN_ORDER;
+  };
+  add_one(0);
+  add_one(1);
+  add_one(2);
+  add_one(3);
+  add_one(4);
+  add_one(5);
+}
+
+}  // namespace kernel
+
+/// @tparam MostSamples in a turn; a longer one is broken off
+/// @tparam WatchesRange false: the caller watches (error_model/channel_watch.hpp) and calls mark_saturated()
+template <class C, int MostSamples = 32767, bool WatchesRange = true>
 class RevolutionAverage {
+  static_assert(MostSamples >= 2, "a turn has samples");
+  static_assert(!std::is_integral_v<C> || MostSamples <= (std::int64_t{1} << (8 * (6 - sizeof(C)) - 1)),
+                "a turn of so many samples would overflow the 64 bits of its sums");
+
  public:
   using Sum = typename RevolutionSum<C>::Type;
   static constexpr Sum kOne = RevolutionSum<C>::kOne;
 
   /// @param axial output along the axis, 0, 1 or 2 (gyro x, y, z)
-  /// @param full_turn what the axial output of one turn sums to: 2 pi / (scale * sample period), in outputs; positive,
-  /// and a turn less than 32767 samples: a longer one is broken off
+  /// @param full_turn what the axial output of one turn sums to: 2 pi / (scale * sample period), in outputs; positive
   /// @param axial_range output at which the axial gyro saturates; 0: unknown
   RevolutionAverage(std::size_t axial, Sum full_turn, C axial_range)
       : axial_(axial),
@@ -91,55 +120,61 @@ class RevolutionAverage {
         near_range_(static_cast<C>(axial_range - axial_range / C(200))) {}
 
   /// A sample without a pulse.
-  void add(const UnitOutput<C>& sample) {
-    accumulate(sample, kOne);
-    look_at_range(sample);
-    break_off_if_endless();
+  /// @return kTimeOut when for MostSamples no pulse has come: the turn is broken off, a new one begins with the next
+  TRUNNION_INLINE Status add(const UnitOutput<C>& sample) {
+    kernel::add<true>(whole_, sample);
+    if constexpr (WatchesRange) look_at_range(sample);
+    if (++count_ < MostSamples) return Status::kOk;
+    return time_out();
   }
 
   /// A sample with a pulse in it. @param before fraction of the sample that lies before the pulse, in [0, kOne]
   /// @return kTurn: the turn stands in turn()
   Pulse add_with_pulse(const UnitOutput<C>& sample, Sum before) {
     if (!(before >= Sum(0) && before <= kOne)) {
-      add(sample);
+      (void)add(sample);
       return Pulse::kBounce;
     }
     look_at_range(sample);
-    const Sum angle = open_.sum[axial_] + static_cast<Sum>(sample[axial_]) * before;
+    const Sum samples = static_cast<Sum>(count_) * kOne + edge_share_ + before;
+    const Sum angle = sum(axial_) + static_cast<Sum>(sample[axial_]) * before;
     const Sum size = angle < Sum(0) ? -angle : angle;
     const Sum turn_size = full_turn_ * kOne;
     int turns = whole(size, turn_size);
     Sum off = size - static_cast<Sum>(turns) * turn_size;
-    if (open_.saturated) {  // the gyro says too little: the last turn's time may say more
+    if (saturated_) {  // the gyro says too little: the last turn's time may say more
       if (closed_.turns > 0) {
-        const int by_time = whole(open_.samples + before, closed_.samples / static_cast<Sum>(closed_.turns));
+        const int by_time = whole(samples, closed_.samples / static_cast<Sum>(closed_.turns));
         turns = by_time > turns ? by_time : turns;
       }
       off = Sum(0);
     }
     if (started_ && (turns < 1 || (off < Sum(0) ? -off : off) > turn_size / Sum(4))) {
-      accumulate(sample, kOne);
-      ++open_.bounces;
-      break_off_if_endless();
+      ++bounces_;
+      (void)add(sample);
       return Pulse::kBounce;
     }
-    accumulate(sample, before);
     const Pulse pulse = started_ ? Pulse::kTurn : Pulse::kFirst;
     if (started_) {
-      closed_ = open_;
+      for (std::size_t i = 0; i < sample.size(); ++i) closed_.sum[i] = sum(i) + static_cast<Sum>(sample[i]) * before;
+      closed_.samples = samples;
       closed_.turns = turns;
+      closed_.bounces = bounces_;
+      closed_.saturated = saturated_;
     }
-    const bool still_saturated = is_saturated(sample);
-    open_ = Revolution<C>{};
-    open_.saturated = still_saturated;
+    begin();
+    saturated_ = is_saturated(sample);
     started_ = true;
-    accumulate(sample, kOne - before);
+    edge_share_ = kOne - before;
+    edge_ = sample;
     return pulse;
   }
 
+  /// The axial gyro was at its range in the last sample.
+  void mark_saturated() { saturated_ = true; }
   /// Forgets the open turn: the axis was not followed for a while.
   void restart() {
-    open_ = Revolution<C>{};
+    begin();
     closed_.turns = 0;  // the next turn may have another speed
     started_ = false;
   }
@@ -149,7 +184,7 @@ class RevolutionAverage {
 
   /// Turns since the last pulse, by the axial gyro: two or more, and the pulse is missing.
   [[nodiscard]] int turns_without_pulse() const {
-    const Sum angle = open_.sum[axial_];
+    const Sum angle = sum(axial_);
     return static_cast<int>((angle < Sum(0) ? -angle : angle) / (full_turn_ * kOne));
   }
 
@@ -159,25 +194,39 @@ class RevolutionAverage {
     const bool countable = unit > Sum(0) && size / unit < Sum(32767);
     return countable ? static_cast<int>((size + unit / Sum(2)) / unit) : 0;
   }
-  /// Without a pulse for so many samples that sums could overflow: a new turn begins with the next one.
-  void break_off_if_endless() {
-    if (open_.samples >= Sum(32767) * kOne) restart();
+  TRUNNION_COLD Status time_out() {
+    restart();
+    return Status::kTimeOut;
   }
-  void accumulate(const UnitOutput<C>& sample, Sum share) {
-    for (std::size_t i = 0; i < sample.size(); ++i) open_.sum[i] += static_cast<Sum>(sample[i]) * share;
-    open_.samples += share;
+  /// Of the open turn so far.
+  [[nodiscard]] Sum sum(std::size_t output) const {
+    return whole_[output] * kOne + static_cast<Sum>(edge_[output]) * edge_share_;
   }
-  [[nodiscard]] bool is_saturated(const UnitOutput<C>& sample) const {
+  void begin() {
+    whole_ = {};
+    edge_ = {};
+    edge_share_ = Sum(0);
+    count_ = bounces_ = 0;
+    saturated_ = false;
+  }
+  [[nodiscard]] TRUNNION_INLINE bool is_saturated(const UnitOutput<C>& sample) const {
     const C z = sample[axial_];
     return axial_range_ > C(0) && (z >= near_range_ || z <= -near_range_);
   }
-  void look_at_range(const UnitOutput<C>& sample) { open_.saturated = open_.saturated || is_saturated(sample); }
+  TRUNNION_INLINE void look_at_range(const UnitOutput<C>& sample) {
+    if (is_saturated(sample)) saturated_ = true;
+  }
 
   std::size_t axial_;
   Sum full_turn_;
   C axial_range_;
-  C near_range_;  // a reading within half a per cent of the range is at it
-  Revolution<C> open_;
+  C near_range_;                // a reading within half a per cent of the range is at it
+  std::array<Sum, 6> whole_{};  // of the open turn: samples that lie in it whole,
+  UnitOutput<C> edge_{};        // and the one that its first pulse fell in
+  Sum edge_share_{};
+  int count_ = 0;
+  int bounces_ = 0;
+  bool saturated_ = false;
   Revolution<C> closed_;
   bool started_ = false;
 };
