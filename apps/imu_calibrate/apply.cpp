@@ -98,16 +98,10 @@ long long apply_to_table(const Options& o, const io::RunFile& run, const io::Rec
 }
 
 void apply(const Options& o) {
-  const io::CalibrationFile file = io::read_calibration_file(o.calibration);
-  InertialUnit<double> unit = file.record.value.unit;
-  if (o.recording > 0) {
-    if (o.recording > file.record.recordings) {
-      throw io::input_error(o.calibration, 0, "recordings",
-                            "has " + std::to_string(file.record.recordings) + ", not " + std::to_string(o.recording));
-    }
-    const auto& bias = file.record.value.recording_bias[static_cast<std::size_t>(o.recording - 1)];
-    unit.gyro.bias = bias.w;
-    unit.accel.bias = bias.f;
+  const InertialUnit<double> unit = io::unit_of(io::read_calibration_file(o.calibration), o.calibration, o.recording);
+  if (!unit.thermal.is_zero()) {
+    std::fprintf(stderr, "%s: has temperature terms, which are not applied: recordings are read without temperature\n",
+                 o.calibration.c_str());
   }
   io::RunFile run;
   io::RecordingFiles files;

@@ -253,7 +253,13 @@ Recording read_recording(const RecordingSource& source) {
   if (source.needs_pulses && recording.pulse.size() < 2)
     throw io::input_error(axis, 0, "", "fewer than two index pulses");
   if (!source.calibration.empty()) {
-    const UnitCorrection<double> correction(io::read_calibration_file(source.calibration).record.value.unit);
+    const InertialUnit<double> unit = io::read_calibration_file(source.calibration).record.value.unit;
+    if (!unit.thermal.is_zero()) {
+      std::fprintf(stderr,
+                   "%s: has temperature terms, which are not applied: recordings are read without temperature\n",
+                   source.calibration.c_str());
+    }
+    const UnitCorrection<double> correction(unit);
     for (InertialSample<double>& s : recording.sample) s = correction.correct(s);
   }
   return recording;

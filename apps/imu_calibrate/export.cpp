@@ -1,0 +1,251 @@
+// SPDX-FileCopyrightText: 2026 the trunnion authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include <cinttypes>
+#include <cstdarg>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+
+#include "../terminal.hpp"
+#include "command.hpp"
+#include "recordings.hpp"
+#include "trunnion/error_model/flash_block.hpp"
+#include "trunnion/io/calibration_file.hpp"
+#include "trunnion/io/digest.hpp"
+#include "trunnion/io/fault.hpp"
+#include "trunnion/io/sensor_sheet.hpp"
+#include "trunnion/io/whole_file.hpp"
+
+namespace trunnion::app {
+namespace {
+
+struct Options {
+  std::string calibration;
+  std::string format = "c";
+  std::string output;
+  std::string block;
+  std::string sheet;
+  std::string name = "calibration";
+  int recording = 0;
+  int bits = 16;
+  int fraction = 6;
+};
+
+/// What is exported: the block, and what the header says about it.
+struct Content {
+  FlashBlock block;
+  UnitOutput<double> error_bound{};
+  UnitScale<double> scale;
+};
+
+/// printf into @p out.
+__attribute__((format(printf, 2, 3))) void add(std::string& out, const char* format, ...) {
+  std::array<char, 400> line{};
+  std::va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(line.data(), line.size(), format, arguments);
+  va_end(arguments);
+  out += line.data();
+}
+
+void add(std::string& out, const kernel::Triple<float>& v) {
+  add(out, "{%aF, %aF, %aF}", static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z));
+}
+void add(std::string& out, const kernel::Matrix<float>& A) {
+  out += "{";
+  add(out, A.x);
+  out += ", ";
+  add(out, A.y);
+  out += ", ";
+  add(out, A.z);
+  out += "}";
+}
+using Coefficients = UnitCorrection<float>::Coefficients;
+void add(std::string& out, const UnitCorrection<float>::Axes& axes) {
+  out += "{";
+  add(out, axes.A);
+  for (const auto* v : {&axes.c, &axes.c_1, &axes.c_2}) {
+    out += ",\n     ";
+    add(out, *v);
+  }
+  out += "}";
+}
+void add(std::string& out, const UnitCorrection<float>::Bend& bend) {
+  out += "{";
+  add(out, bend.A);
+  out += ",\n     ";
+  add(out, bend.quadratic);
+  out += ", ";
+  add(out, bend.cubic);
+  out += "}";
+}
+void add(std::string& out, const CountCoefficients::Row& row) {
+  add(out, "{%" PRId32 ", %" PRId32 ", %" PRId32 "}", row[0], row[1], row[2]);
+}
+void add(std::string& out, const std::array<CountCoefficients::Axis, 3>& axes) {
+  out += "{{";
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    const auto& a = axes[i];
+    add(out, "%s{%" PRId64 "LL, %" PRId64 "LL, %" PRId64 "LL,\n      ", i == 0 ? "" : ",\n     ", a.c, a.c_1, a.c_2);
+    add(out, a.A);
+    out += ", ";
+    add(out, a.H);
+    add(out, ", %" PRId32 ", %" PRId32 "}", a.quadratic, a.cubic);
+  }
+  out += "}}";
+}
+
+std::string header_of(const Content& content, const Options& o, const std::string& digest) {
+  const FlashBlock& block = content.block;
+  std::string out;
+  add(out, "// Written by %s from %s,\n// SHA-256 %s. Do not edit.\n", tool_name().c_str(),
+      io::printable(o.calibration).c_str(), digest.c_str());
+  add(out, "// Unit: %s\n", io::printable(block.name.data()).c_str());
+  if (o.recording > 0) add(out, "// Turn-on bias: recording %d\n", o.recording);
+  out += "#pragma once\n// clang-format off\n\n#include \"trunnion/error_model/count_correction.hpp\"\n";
+  out += "#include \"trunnion/error_model/inertial_unit.hpp\"\n\n";
+  add(out, "namespace %s {\n\n", o.name.c_str());
+  if (block.has_counts != 0) {
+    add(out,
+        "// For raw counts: rate [rad/s] = (count - %.17g) / %.17g, specific force [m/s^2] = (count - %.17g) / "
+        "%.17g.\n",
+        content.scale.gyro.zero, content.scale.gyro.scale, content.scale.accel.zero, content.scale.accel.scale);
+  } else {
+    out += "// For readings in rad/s and m/s^2.\n";
+  }
+  out += "inline constexpr trunnion::UnitCorrection<float>::Coefficients kUnit = {\n    ";
+  add(out, block.unit.accel);
+  out += ",\n    ";
+  add(out, block.unit.gyro);
+  out += ",\n    ";
+  add(out, block.unit.H);
+  out += ",\n    ";
+  add(out, block.unit.accel_bend);
+  out += ",\n    ";
+  add(out, block.unit.gyro_bend);
+  add(out, ",\n    %aF, %aF};\n", static_cast<double>(block.unit.reference), static_cast<double>(block.unit.is_linear));
+  if (block.has_counts != 0) {
+    const double per_count = static_cast<double>(1LL << o.fraction);
+    add(out, "\n// Readings of %d bits in, corrected counts of 1/%lld out: SI = out / kGyroScale, out / kAccelScale.\n",
+        o.bits, 1LL << o.fraction);
+    add(out, "// Largest error against exact arithmetic, in counts out: gyros %.3f, accelerometers %.3f.\n",
+        *std::max_element(content.error_bound.begin(), content.error_bound.begin() + 3),
+        *std::max_element(content.error_bound.begin() + 3, content.error_bound.end()));
+    add(out, "inline constexpr double kGyroScale = %.17g;   // counts out per rad/s\n",
+        content.scale.gyro.scale * per_count);
+    add(out, "inline constexpr double kAccelScale = %.17g;  // counts out per m/s^2\n",
+        content.scale.accel.scale * per_count);
+    out += "inline constexpr trunnion::CountCoefficients kCounts = {\n    ";
+    add(out, block.counts.gyro);
+    out += ",\n    ";
+    add(out, block.counts.accel);
+    add(out, ",\n    %" PRId32 ", %d, %d, %" PRId32 ", 0};\n", block.counts.reference, block.counts.bits,
+        block.counts.shift, block.counts.is_linear);
+  }
+  add(out, "\n}  // namespace %s\n", o.name.c_str());
+  return out;
+}
+
+Content content_of(const io::CalibrationFile& file, const Options& o) {
+  Content content;
+  const InertialUnit<double> unit = io::unit_of(file, o.calibration, o.recording);
+  if (!o.sheet.empty()) {
+    content.scale = io::read_sensor_sheet(o.sheet).counts;
+    const auto made = count_calibration(unit, content.scale, o.bits, o.fraction);
+    if (!made.ok()) {
+      throw io::input_error(o.calibration, 0, "",
+                            "does not fit the integer path with the sheet's scale, --bits " + std::to_string(o.bits) +
+                                " and --fraction " + std::to_string(o.fraction) +
+                                ": bias and zero must lie within the readings' range, a row of the inverse matrix sum "
+                                "to less than 1.99, the nonlinearity be below 1/512 of full scale");
+    }
+    content.block.counts = made.value().coefficients;
+    content.block.has_counts = 1;
+    content.error_bound = made.value().error_bound;
+  }
+  content.block.unit = UnitCorrection<float>(unit, content.scale).coefficients();
+  const std::string name = file.model + (file.serial.empty() ? "" : " " + file.serial);
+  std::memcpy(content.block.name.data(), name.data(), std::min(name.size(), content.block.name.size() - 1));
+  content.block.seal();
+  return content;
+}
+
+void export_calibration(const Options& o) {
+  if (o.output.empty() && o.block.empty())
+    throw Error(ExitCode::kUsage, "export: name an --output, a --block, or both");
+  if (!o.output.empty() && o.output == o.block) throw Error(ExitCode::kUsage, "--output and --block are the same file");
+  for (const std::string& output : {o.output, o.block}) {
+    if (!output.empty())
+      keep_inputs(output, o.sheet.empty() ? std::vector<std::string>{o.calibration}
+                                          : std::vector<std::string>{o.calibration, o.sheet});
+  }
+  const std::string digest = io::sha256(io::read_whole(o.calibration));
+  const Content content = content_of(io::read_calibration_file(o.calibration), o);
+  if (!o.output.empty()) {
+    io::write_whole(o.output, header_of(content, o, digest));
+    std::printf("%s: header, %s\n", o.output.c_str(), content.block.has_counts != 0 ? "float and counts" : "float");
+  }
+  if (!o.block.empty()) {
+    io::write_whole(o.block, {reinterpret_cast<const char*>(&content.block), sizeof(content.block)});
+    std::printf("%s: flash block of version %u, %zu bytes, CRC %08x\n", o.block.c_str(), content.block.version,
+                sizeof(content.block), content.block.crc);
+  }
+}
+
+/// A C++ name, by parts.
+std::string is_namespace(const std::string& text) {
+  bool start = true;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto c = static_cast<unsigned char>(text[i]);
+    if (!start && text.compare(i, 2, "::") == 0) {
+      start = true;
+      ++i;
+      continue;
+    }
+    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+    if (!letter && (start || c < '0' || c > '9')) return "should be a C++ namespace";
+    start = false;
+  }
+  return start ? "should be a C++ namespace" : "";
+}
+
+}  // namespace
+
+void add_export(CLI::App& app, ExitCode& exit_code) {
+  CLI::App* command = app.add_subcommand("export", "Write a calibration for firmware: a C++ header, a block for flash");
+  auto o = std::make_shared<Options>();
+  command->add_option("calibration", o->calibration, "Calibration file")->required();
+  command->add_option("--format", o->format, "c: a header of constexpr coefficients")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"c"}));
+  command->add_option("-o,--output", o->output, "Header to write");
+  command->add_option("--block", o->block, "Binary block for flash to write, little-endian, with version and CRC-32");
+  auto* sheet = command->add_option("--sheet", o->sheet,
+                                    "Sensor sheet with the scale of raw counts: readings are counts then, and the "
+                                    "coefficients of the integer path are written too");
+  command->add_option("--bits", o->bits, "Of a raw count, sign included")
+      ->capture_default_str()
+      ->check(CLI::Range(2, 30))
+      ->needs(sheet);
+  command
+      ->add_option("--fraction", o->fraction,
+                   "Binary digits behind the point of a corrected count; with --bits at most 30")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 28))
+      ->needs(sheet);
+  command->add_option("--recording", o->recording, "Use the turn-on bias of this recording, from 1; default the mean")
+      ->check(CLI::Range(1, 1000));
+  command->add_option("--namespace", o->name, "Of the header's names")
+      ->capture_default_str()
+      ->check(CLI::Validator(is_namespace, "NAME"));
+  command->footer(
+      "Example:\n  imu_calibrate export calibration.yaml --sheet sheet.yaml --bits 16 -o calibration.hpp --block "
+      "calibration.bin");
+  command->callback([o, &exit_code] {
+    export_calibration(*o);
+    exit_code = ExitCode::kDone;
+  });
+}
+
+}  // namespace trunnion::app
