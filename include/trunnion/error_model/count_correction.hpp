@@ -10,7 +10,7 @@
 /// c holds the folded bias and zero and the half that makes floor a rounding. A count out is 2^(2-s) of a count in, and
 /// 2^-fraction of one is what is stated: s = fraction + 2. Of the gyros a third sum takes H f away (H in Q32, f the
 /// corrected specific force out); a nonlinearity is taken away in Triad's two steps. Against (5) of inertial_unit.hpp
-/// in exact numbers, in counts out (docs/theory/calibration.md, eq. 15-18):
+/// in exact numbers, in counts out (docs/theory/calibration.md, eq. 28-32):
 ///
 ///   |error_i| <= 1/2 + sum_j 2^(B+s-34) + ...                                                      ... (2)
 ///

@@ -18,7 +18,7 @@
 ///
 /// with w_ie and w_en in the middle of D, g at its start. What (4) leaves out is of third order in (w_ie + w_en) D,
 /// 1e-5 at 0.1 s; no trigonometric function anywhere, and no branch that depends on a sample but the refusals. Savage,
-/// J. Guidance 21 (1998), 19 and 208 (two-speed integration); docs/theory/strapdown.md, section 4. Navigator is the
+/// J. Guidance 21 (1998), 19 and 208 (two-speed integration); docs/theory/strapdown.md, section 3. Navigator is the
 /// finer one.
 
 #pragma once
