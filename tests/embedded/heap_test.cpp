@@ -14,6 +14,10 @@ namespace trunnion {
 // every member, of every scalar
 template class RevolutionAverage<std::int16_t>;
 template class RevolutionAverage<std::int32_t>;
+template class CountDemodulator<23, 4096>;
+template class AngleBins<23, 4096>;
+template class BasicCountCorrection<true>;
+template class BasicCountCorrection<false>;
 #define TRUNNION_INSTANTIATE(T)                    \
   template class RevolutionAverage<T>;             \
   template class IndexDemodulator<T>;              \
@@ -25,6 +29,9 @@ template class RevolutionAverage<std::int32_t>;
   template class SwingingAlignment<T>;             \
   template class FineAlignment<PreviousSample<T>>; \
   template class WheelDeadReckoning<T>;            \
+  template class UnitCorrection<T>;                \
+  template class TwoSpeedNavigator<T>;             \
+  template class Attitude<T>;                      \
   template class Navigator<PreviousSample<T>>;     \
   template class Navigator<MultiSample<T, 2>>;     \
   template class Navigator<MultiSample<T, 3>>;     \
@@ -86,6 +93,42 @@ T turn_and_align() {
          fine.result().value().covariance.sum() + swinging.attitude().value().w() +
          compass.solve(T(1e-6)).value().heading + T(counts.turn().turns);
 }
+
+/// Every hot path in integers, and the navigator behind them. @return something that depends on all of it
+float turn_in_integers() {
+  using namespace trunnion;
+  static const CountCalibration made = count_calibration({}, {{1000.0, 0.0}, {200.0, 0.0}}, 16, 6).value();
+  CountCorrection correction(made.coefficients);
+  ChannelWatch watch(32767, 32767, 400);
+  EncoderPhase encoder(0);
+  AxialPhase axial(1000000);
+  CountDemodulator<23, 1000> demodulator;
+  AngleBins<23, 1000> bins;
+  TwoSpeedNavigator<float> navigator(NavigationState<float>{}, 0.01F, 5);
+  Attitude<float> attitude(Quaternion<float>::Identity());
+  float sum = 0.0F;
+  for (int i = 1; i < 1500; ++i) {
+    const UnitOutput<std::int32_t> raw{i % 7, -i % 5, 500 + i % 3, i % 11, 3, -2000};
+    correction.set_temperature(i / 100);
+    if (watch.look(raw) == Status::kSaturated) demodulator.mark_saturated();
+    const auto counts = correction.correct(raw);
+    const EncoderPhase::Step step = encoder.add(static_cast<BinaryAngle>(i) * 21474836U);
+    sum += static_cast<float>(axial.middle(counts[2]) >> 16U);
+    if (step.pulse.before < 0) {
+      (void)demodulator.add(counts, sin_cos(step.middle));
+      (void)bins.add(counts, step.middle);
+    } else {
+      (void)axial.pulse(step.pulse.before, counts[2]);
+      (void)bins.add_with_pulse(counts, step.middle, step.pulse);
+      if (demodulator.add_with_pulse(counts, sin_cos(step.middle), step.pulse))
+        sum += demodulator.split_as<float>().unit[0] + static_cast<float>(bins.turn().split().unit[0]);
+    }
+    const Increment<float> increment{Vec3<float>(1e-4F, 0.0F, 0.0F), Vec3<float>(0.0F, 0.0F, -0.098F)};
+    (void)navigator.add(increment);
+    (void)attitude.add(increment.angle, increment.angle);
+  }
+  return sum + navigator.state().velocity.sum() + attitude.q().w();
+}
 }  // namespace
 
 extern "C" void* __libc_malloc(std::size_t);  // NOLINT(bugprone-reserved-identifier): glibc's own name
@@ -130,6 +173,7 @@ int main() {
     if (navigator.add(increment) != Status::kOk || exact.add(increment) != Status::kOk) return 3;
   }
   sum.f += navigator.state().velocity + exact.state().velocity;
+  sum.f.x() += turn_in_integers();
   sum.w.x() += turn_and_align<float>();
   sum.w.y() += static_cast<float>(turn_and_align<double>());
   sum.w.z() += static_cast<float>(turn_and_align<long double>());
