@@ -51,6 +51,7 @@ class FrontEnd {
       status = modulation_.add(out.counts, out.phasor);
     else
       out.turn = modulation_.add_with_pulse(out.counts, out.phasor, out.step.pulse);
+    if (out.turn && seen == Status::kSaturated) modulation_.mark_saturated();  // the next turn has its share of it
     return seen != Status::kOk ? seen : status;
   }
   [[nodiscard]] const Modulation& modulation() const { return modulation_; }
@@ -69,7 +70,7 @@ class Chain {
   Chain(trunnion::BinaryAngle angle, const trunnion::WanderState<float>& start)
       : front_(Unit::kCounts, angle), navigator_(start, static_cast<float>(kPeriod), 20) {}
 
-  /// @return what the watch says, kTimeOut, or kOutOfRange of the navigator
+  /// @return kOutOfRange of the navigator, or what the watch says, or kTimeOut
   /// @param turned whether a turn is complete: it stands in front().modulation().record()
   trunnion::Status add(const Sample& sample, bool& turned) {
     Corrected c;
@@ -95,7 +96,7 @@ class Chain {
     turn(c.counts.data() + 3, kVelocity, increment.velocity);
     increment.angle.coeffRef(2) -= moved;
     const trunnion::Status moved_on = navigator_.take();
-    return seen != trunnion::Status::kOk ? seen : moved_on;
+    return moved_on != trunnion::Status::kOk ? moved_on : seen;
   }
   trunnion::Status add(const Sample& sample) {
     bool turned = false;

@@ -56,6 +56,7 @@ class Integers {
     digest.add(c.phasor.sine.raw);
     digest.add(c.phasor.cosine.raw);
     for (std::int32_t x : bent_.correct_saturated(s.counts)) digest.add(x);
+    sum(c, digest);
     if (c.step.pulse.before < 0) {
       (void)bins_.add(c.counts, c.step.middle);
     } else if (bins_.add_with_pulse(c.counts, c.step.middle, c.step.pulse)) {
@@ -76,9 +77,20 @@ class Integers {
   }
 
  private:
+  void sum(const Corrected& c, Digest& digest) {
+    if (c.step.pulse.before < 0) {
+      digest.add(static_cast<std::int32_t>(average_.add(c.counts)));
+      return;
+    }
+    digest.add(static_cast<std::int32_t>(average_.add_with_pulse(c.counts, c.step.pulse.before)));
+    for (std::int64_t x : average_.turn().sum) digest.add(x);
+    for (std::size_t i = 0; i < 6; ++i) digest.add(average_.turn().mean(i));
+  }
+
   FrontEnd front_{golden::kCounts, kStartAngle};
   trunnion::CountCorrection bent_{bent_counts()};
   trunnion::AngleBins<kBits, kMostSamples> bins_;
+  trunnion::RevolutionAverage<std::int32_t> average_{2, kFullTurn, kRange << 6};
   trunnion::AxialPhase axial_{kFullTurn};
 };
 

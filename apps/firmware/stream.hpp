@@ -78,7 +78,8 @@ class Extremes {
  public:
   Sample next() {
     Sample s{};
-    for (std::int32_t& count : s.counts) count = one();
+    const bool in_range = (dice_() & 1U) != 0U;  // so that what refuses the others has something to do
+    for (std::int32_t& count : s.counts) count = in_range ? static_cast<std::int16_t>(one()) : one();
     s.angle = dice_();
     s.temperature = one() >> (dice_() & 15U);
     return s;

@@ -1,7 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the trunnion authors
 // SPDX-License-Identifier: BSD-3-Clause
 
+#include <algorithm>
 #include <cinttypes>
+#include <cmath>
 #include <cstdarg>
 #include <cstdio>
 #include <cstring>
@@ -30,6 +32,7 @@ struct Options {
   int recording = 0;
   int bits = 16;
   int fraction = 6;
+  bool float_only = false;
 };
 
 /// What is exported: the block, and what the header says about it.
@@ -96,12 +99,19 @@ void add(std::string& out, const std::array<CountCoefficients::Axis, 3>& axes) {
   out += "}}";
 }
 
+/// A name as it may stand in a line of comment: a backslash at its end would join the next.
+std::string in_comment(const std::string& name) {
+  std::string text = io::printable(name);
+  std::replace(text.begin(), text.end(), '\\', '/');
+  return text;
+}
+
 std::string header_of(const Content& content, const Options& o, const std::string& digest) {
   const FlashBlock& block = content.block;
   std::string out;
   add(out, "// Written by %s from %s,\n// SHA-256 %s. Do not edit.\n", tool_name().c_str(),
-      io::printable(o.calibration).c_str(), digest.c_str());
-  add(out, "// Unit: %s\n", io::printable(block.name.data()).c_str());
+      in_comment(o.calibration).c_str(), digest.c_str());
+  add(out, "// Unit: %s\n", in_comment(block.name.data()).c_str());
   if (o.recording > 0) add(out, "// Turn-on bias: recording %d\n", o.recording);
   out += "#pragma once\n// clang-format off\n\n#include \"trunnion/error_model/count_correction.hpp\"\n";
   out += "#include \"trunnion/error_model/inertial_unit.hpp\"\n\n";
@@ -125,7 +135,7 @@ std::string header_of(const Content& content, const Options& o, const std::strin
   out += ",\n    ";
   add(out, block.unit.gyro_bend);
   add(out, ",\n    %aF, %aF};\n", static_cast<double>(block.unit.reference), static_cast<double>(block.unit.is_linear));
-  if (block.has_counts != 0) {
+  if (block.has_counts == 1) {
     const double per_count = static_cast<double>(1LL << o.fraction);
     add(out, "\n// Readings of %d bits in, corrected counts of 1/%lld out: SI = out / kGyroScale, out / kAccelScale.\n",
         o.bits, 1LL << o.fraction);
@@ -147,25 +157,80 @@ std::string header_of(const Content& content, const Options& o, const std::strin
   return out;
 }
 
+/// Whether the sheet's counts can be those of a register of --bits.
+void hold_against_sheet(const io::CalibrationFile& file, const io::SensorSheet& sheet, const Options& o) {
+  if (!file.model.empty() && !sheet.model.empty() && file.model != sheet.model) {
+    std::fprintf(stderr, "%s: is a sheet of %s, the calibration is of %s\n", o.sheet.c_str(),
+                 io::printable(sheet.model).c_str(), io::printable(file.model).c_str());
+  }
+  const double full_scale = std::ldexp(1.0, o.bits - 1);
+  const auto hold = [&](const char* key, const NominalScale<double>& counts, double range, double most) {
+    const double reach = full_scale / std::abs(counts.scale);
+    if (reach > most) {
+      throw io::input_error(o.sheet, 0, key,
+                            "of " + figure(counts.scale, 6) + " makes " + std::to_string(o.bits) + " bits reach to " +
+                                figure(reach, 3) + ": no raw counts; a sheet of a unit that reads in SI has none");
+    }
+    const double counted = range * std::abs(counts.scale) + std::abs(counts.zero);
+    if (counted > 1.001 * full_scale || std::abs(counts.zero) >= full_scale) {
+      throw io::input_error(o.sheet, 0, key,
+                            "and the range make " + figure(counted, 6) + " counts, with the zero: more than --bits " +
+                                std::to_string(o.bits) + " hold (an unsigned register needs one bit more)");
+    }
+  };
+  hold("scale_counts_per_rad_s", sheet.counts.gyro, sheet.gyro_range, 1000.0);
+  hold("scale_counts_per_m_s2", sheet.counts.accel, sheet.accel_range, 1e5);
+}
+
+/// What count_calibration() refuses, in words.
+std::string why_not(const InertialUnit<double>& unit, const UnitScale<double>& scale, const Options& o) {
+  if (o.bits + o.fraction > 30)
+    return "--bits and --fraction are " + std::to_string(o.bits + o.fraction) + " together, at most 30";
+  std::string why = "does not fit the integer path (--float-only leaves it out):";
+  const double full_scale = std::ldexp(1.0, o.bits - 1);
+  const auto judge = [&](const char* name, const Triad<double>& triad, const NominalScale<double>& counts) {
+    const double range = full_scale / counts.scale;
+    const Mat3<double> A = triad.matrix().inverse();
+    const double row = A.cwiseAbs().rowwise().sum().maxCoeff();
+    const double zero =
+        (A * (counts.scale * triad.bias + Vec3<double>::Constant(counts.zero))).cwiseAbs().maxCoeff() / full_scale;
+    const double bend =
+        (triad.quadratic.cwiseAbs() * std::abs(range) + triad.cubic.cwiseAbs() * range * range).maxCoeff();
+    if (!(row < 1.99))
+      why += std::string(" a row of the ") + name + "' inverse matrix sums to " + figure(row, 4) + ", at most 1.99;";
+    if (!(zero < 1.0))
+      why += std::string(" bias and zero of the ") + name + " are " + figure(zero, 3) + " of full scale, at most 1;";
+    if (!(bend < 1.0 / 512.0))
+      why += std::string(" the ") + name + "' nonlinearity is " + figure(100.0 * bend, 3) + " % of " +
+             figure(std::abs(range), 4) + ", at most 0.195;";
+  };
+  judge("gyros", unit.gyro, scale.gyro);
+  judge("accelerometers", unit.accel, scale.accel);
+  if (why.back() == ':')
+    why += " g-sensitivity above an eighth of a count by a count, or all of it together too large;";
+  why.pop_back();
+  return why;
+}
+
 Content content_of(const io::CalibrationFile& file, const Options& o) {
   Content content;
   const InertialUnit<double> unit = io::unit_of(file, o.calibration, o.recording);
   if (!o.sheet.empty()) {
-    content.scale = io::read_sensor_sheet(o.sheet).counts;
-    const auto made = count_calibration(unit, content.scale, o.bits, o.fraction);
-    if (!made.ok()) {
-      throw io::input_error(o.calibration, 0, "",
-                            "does not fit the integer path with the sheet's scale, --bits " + std::to_string(o.bits) +
-                                " and --fraction " + std::to_string(o.fraction) +
-                                ": bias and zero must lie within the readings' range, a row of the inverse matrix sum "
-                                "to less than 1.99, the nonlinearity be below 1/512 of full scale");
+    const io::SensorSheet sheet = io::read_sensor_sheet(o.sheet);
+    content.scale = sheet.counts;
+    hold_against_sheet(file, sheet, o);
+    content.block.has_counts = o.float_only ? 2 : 1;
+    if (!o.float_only) {
+      const auto made = count_calibration(unit, content.scale, o.bits, o.fraction);
+      if (!made.ok()) throw io::input_error(o.calibration, 0, "", why_not(unit, content.scale, o));
+      content.block.counts = made.value().coefficients;
+      content.error_bound = made.value().error_bound;
     }
-    content.block.counts = made.value().coefficients;
-    content.block.has_counts = 1;
-    content.error_bound = made.value().error_bound;
   }
   content.block.unit = UnitCorrection<float>(unit, content.scale).coefficients();
   const std::string name = file.model + (file.serial.empty() ? "" : " " + file.serial);
+  if (!o.block.empty() && name.size() >= content.block.name.size())
+    std::fprintf(stderr, "%s: the block holds 31 bytes of model and serial\n", o.calibration.c_str());
   std::memcpy(content.block.name.data(), name.data(), std::min(name.size(), content.block.name.size() - 1));
   content.block.seal();
   return content;
@@ -184,7 +249,8 @@ void export_calibration(const Options& o) {
   const Content content = content_of(io::read_calibration_file(o.calibration), o);
   if (!o.output.empty()) {
     io::write_whole(o.output, header_of(content, o, digest));
-    std::printf("%s: header, %s\n", o.output.c_str(), content.block.has_counts != 0 ? "float and counts" : "float");
+    std::printf("%s: header, %s\n", o.output.c_str(),
+                content.block.has_counts == 1 ? "float and counts" : "float");
   }
   if (!o.block.empty()) {
     io::write_whole(o.block, {reinterpret_cast<const char*>(&content.block), sizeof(content.block)});
@@ -233,6 +299,8 @@ void add_export(CLI::App& app, ExitCode& exit_code) {
                    "Binary digits behind the point of a corrected count; with --bits at most 30")
       ->capture_default_str()
       ->check(CLI::Range(0, 28))
+      ->needs(sheet);
+  command->add_flag("--float-only", o->float_only, "With --sheet: the coefficients of the float path alone")
       ->needs(sheet);
   command->add_option("--recording", o->recording, "Use the turn-on bias of this recording, from 1; default the mean")
       ->check(CLI::Range(1, 1000));

@@ -77,6 +77,8 @@ TEST(Fixed, SaturatesAtTheNearestEnd) {
     const Integer expected = exact > kMost ? Integer{kMost} : exact < kLeast ? Integer{kLeast} : exact;
     EXPECT_TRUE(Integer{saturated<31>(wide).raw} == expected);
   }
+  EXPECT_EQ(saturated<31>(Wide<62>{std::numeric_limits<std::int64_t>::max()}).raw, kMost);
+  EXPECT_EQ(saturated<31>(Wide<62>{std::numeric_limits<std::int64_t>::min()}).raw, kLeast);
   EXPECT_EQ(saturate(std::int64_t{kMost} + 1), kMost);
   EXPECT_EQ(saturate(std::int64_t{kLeast} - 1), kLeast);
   EXPECT_EQ(saturate(-5), -5);
@@ -88,6 +90,7 @@ TEST(Fixed, TakesRealNumbersToTheNearest) {
   static_assert(Fixed<31>::nearest(-1.0).raw == kLeast);
   static_assert(Fixed<0>::nearest(2.5).raw == 3);
   static_assert(Fixed<0>::nearest(-2.5).raw == -3);
+  static_assert(Fixed<0>::nearest(0.49999999999999994).raw == 0);
   static_assert(Fixed<16>::nearest(1e300).raw == kMost);
   static_assert(Fixed<16>::nearest(-1e300).raw == kLeast);
   EXPECT_EQ(Fixed<16>::nearest(std::numeric_limits<double>::quiet_NaN()).raw, 0);

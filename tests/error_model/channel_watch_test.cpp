@@ -24,16 +24,18 @@ TEST(ChannelWatch, NamesTheSaturatedChannels) {
   ChannelWatch watch(kRange, 16000, 400);
   for (std::size_t channel = 0; channel < 6; ++channel) {
     const std::int32_t range = channel < 3 ? kRange : 16000;
-    for (const std::int32_t reading :
-         {range, -range - 1, std::numeric_limits<std::int32_t>::max(), std::numeric_limits<std::int32_t>::min()}) {
+    for (const std::int32_t reading : {range, -range, -range - 1, std::numeric_limits<std::int32_t>::max(),
+                                       std::numeric_limits<std::int32_t>::min()}) {
       UnitOutput<std::int32_t> y = moving(1);
       y[channel] = reading;
       EXPECT_EQ(watch.look(y), Status::kSaturated);
-      EXPECT_EQ(watch.which(), 1U << channel);
+      EXPECT_EQ(watch.saturated(), 1U << channel);
     }
-    UnitOutput<std::int32_t> y = moving(1);
-    y[channel] = range - 1;
-    EXPECT_EQ(watch.look(y), Status::kOk);
+    for (const std::int32_t within : {range - 1, 1 - range}) {
+      UnitOutput<std::int32_t> y = moving(1);
+      y[channel] = within;
+      EXPECT_EQ(watch.look(y), Status::kOk);
+    }
   }
 }
 
@@ -49,7 +51,7 @@ TEST(ChannelWatch, NamesAStuckChannel) {
     }
     EXPECT_GE(said, 400 - 16) << channel;
     EXPECT_LE(said, 400 + 32) << channel;
-    EXPECT_EQ(watch.which(), 1U << channel);
+    EXPECT_EQ(watch.stuck(), 1U << channel);
     for (int i = 0; i < 16; ++i) (void)watch.look(moving(i));
     EXPECT_EQ(watch.look(moving(3)), Status::kOk);
   }

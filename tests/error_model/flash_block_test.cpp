@@ -99,6 +99,28 @@ TEST(FlashBlock, RefusesTheOtherByteOrder) {
   EXPECT_EQ(read_flash_block(bytes.at.data(), kSize).status(), Status::kOtherByteOrder);
 }
 
+// Sealed, but by no factory of ours: a shift that no processor defines must not be reached.
+TEST(FlashBlock, RefusesCountsThatCannotBe) {
+  const auto status = [](int bits, int shift, int linear, int has_counts) {
+    FlashBlock block = filled();
+    block.counts.bits = static_cast<std::int16_t>(bits);
+    block.counts.shift = static_cast<std::int16_t>(shift);
+    block.counts.is_linear = linear;
+    block.has_counts = has_counts;
+    block.seal();
+    return read_flash_block(&block, kSize).status();
+  };
+  EXPECT_EQ(status(16, 8, 1, 1), Status::kOk);
+  for (const auto& bad :
+       {std::array<int, 4>{0, 8, 1, 1}, {16, 40, 1, 1}, {16, 17, 1, 1}, {16, 0, 1, 1}, {16, 8, 2, 1}, {16, 8, 1, 3}})
+    EXPECT_EQ(status(bad[0], bad[1], bad[2], bad[3]), Status::kDamaged);
+  FlashBlock without;  // of a calibration in SI
+  without.seal();
+  const auto read = read_flash_block(&without, kSize);
+  ASSERT_TRUE(read.ok());
+  EXPECT_EQ(CountCorrection(read.value()->counts).correct_saturated({7, 7, 7, 7, 7, 7}), (UnitOutput<std::int32_t>{}));
+}
+
 TEST(FlashBlock, RefusesErasedShortAndCrookedMemory) {
   Bytes bytes = bytes_of(filled());
   EXPECT_EQ(read_flash_block(bytes.at.data(), kSize - 1).status(), Status::kOutOfRange);

@@ -137,6 +137,8 @@ TEST(UnitCorrection, SaysThatAReadingIsNotFinite) {
     }
   }
   EXPECT_TRUE(correction.checked({Vec3<float>(1, 2, 3), Vec3<float>(4, 5, 6)}).ok());
+  EXPECT_TRUE(correction.checked({Vec3<float>(1, 2, 3), Vec3<float>(4, 5, 6)}, 20.0F).ok());
+  EXPECT_FALSE(correction.checked({}, std::numeric_limits<float>::quiet_NaN()).ok());
 }
 
 }  // namespace

@@ -180,8 +180,12 @@ TEST(TwoSpeedNavigator, RefusesWhatIsNotFiniteAndGoesOn) {
   const Increment<float> good = cast<float>(truth.increment(0.0L, 0.005L));
   TwoSpeedNavigator<float> plain(truth.state(0.0L), 0.005F, 10);
   TwoSpeedNavigator<float> troubled(truth.state(0.0L), 0.005F, 10);
-  const float bad_values[] = {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
-                              -std::numeric_limits<float>::infinity(), 3e38F};
+  const float bad_values[] = {std::numeric_limits<float>::quiet_NaN(),
+                              std::numeric_limits<float>::infinity(),
+                              -std::numeric_limits<float>::infinity(),
+                              3e38F,
+                              1e10F,
+                              1e3F};
   for (int i = 0; i < 500; ++i) {
     for (int k = 0; k < 12 && i % 50 == 7; ++k) {
       for (const float bad : bad_values) {
@@ -189,7 +193,6 @@ TEST(TwoSpeedNavigator, RefusesWhatIsNotFiniteAndGoesOn) {
         Increment<float> second = good;
         Increment<float>& hit = k < 6 ? first : second;
         (k % 6 < 3 ? hit.angle : hit.velocity)(k % 3) = bad;
-        if (bad == 3e38F && k % 6 >= 3) continue;  // a force that is finite, if absurd
         EXPECT_EQ(troubled.add(first, second), Status::kOutOfRange) << k << " " << bad;
       }
     }
@@ -198,6 +201,33 @@ TEST(TwoSpeedNavigator, RefusesWhatIsNotFiniteAndGoesOn) {
   }
   EXPECT_EQ(plain.state().latitude, troubled.state().latitude);
   EXPECT_EQ(plain.state().velocity, troubled.state().velocity);
+}
+// A state that is none says so ten times a second, however good the samples are.
+TEST(TwoSpeedNavigator, SaysThatItsStateIsNone) {
+  NavigationState<float> start;
+  start.latitude = std::numeric_limits<float>::quiet_NaN();
+  TwoSpeedNavigator<float> lost(start, 0.005F, 10);
+  TwoSpeedNavigator<float> fast(WanderState<float>{}, 0.005F, 10);
+  const Increment<float> push{Vec3<float>::Zero(), Vec3<float>(40.0F, 0.0F, 0.0F)};
+  int lost_said = 0;
+  int fast_said = 0;
+  for (int i = 0; i < 4000; ++i) {
+    lost_said += lost.add(Increment<float>{}, Increment<float>{}) == Status::kOutOfRange ? 1 : 0;
+    fast_said += fast.add(push, push) == Status::kOutOfRange ? 1 : 0;
+  }
+  EXPECT_EQ(lost_said, 400);
+  EXPECT_GT(fast_said, 200);
+}
+TEST(TwoSpeedNavigator, TakesNoSlowStepBeyondASecond) {
+  const PathTruth<Flight> truth(Flight{});
+  TwoSpeedNavigator<double> slow(truth.state(0.0L), 0.01, 100000);
+  TwoSpeedNavigator<double> plain(truth.state(0.0L), 0.01, 50);
+  for (int i = 0; i < 3000; ++i) {
+    const Increment<double> increment = cast<double>(truth.increment(0.01L * i, 0.01L * (i + 1)));
+    ASSERT_EQ(slow.add(increment), Status::kOk);
+    ASSERT_EQ(plain.add(increment), Status::kOk);
+  }
+  EXPECT_EQ(slow.state().velocity, plain.state().velocity);
 }
 TEST(TwoSpeedNavigator, RefusesEverySampleWithoutATimeStep) {
   for (const float period :
@@ -242,6 +272,9 @@ TEST(Attitude, KeepsItsLengthInFloatAndRefuses) {
     EXPECT_EQ(attitude.add(zero, Vec3<float>(bad, 0.0F, 0.0F)), Status::kOutOfRange);
   }
   EXPECT_EQ(attitude.q().coeffs(), before.coeffs());
+  Attitude<float> stretched(Quaternion<float>(1.0F, 1.0F, 1.0F, 0.0F));
+  EXPECT_EQ(stretched.add(zero, zero), Status::kOk);
+  EXPECT_NEAR(stretched.q().norm(), 1.0F, 3e-7F);
 }
 
 }  // namespace

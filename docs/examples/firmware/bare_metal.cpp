@@ -20,6 +20,9 @@ extern "C" const unsigned char calibration_block[];
 
 namespace {
 constexpr float kPeriod = 1.0F / 400.0F;
+// 43.5 deg north, 125.5 deg east, 220 m, level, heading north: trunnion::wander_state<float>(...) of a host
+const trunnion::WanderState<float> kStart = {
+    {0.178157344F, 0.801921785F, 0.35103333F, 0.449291974F}, {1.0F, 0.0F, 0.0F, 0.0F}, {0.0F, 0.0F, 0.0F}, 220.0F};
 SampleRing<firmware::Sample, 16> ring;
 firmware::Turning sensor;
 }  // namespace
@@ -34,12 +37,13 @@ int board::run() {
     return 1;
   }
   const trunnion::UnitCorrection<float> correction(block.value()->unit);
-  trunnion::TwoSpeedNavigator<float> navigator(trunnion::WanderState<float>{}, kPeriod, 20);
+  trunnion::TwoSpeedNavigator<float> navigator(kStart, kPeriod, 20);  // the Earth every 0.1 s
 
   board::systick(4) = 25000000 / 400 - 1;
   board::systick(8) = 0;
   board::systick(0) = 7;  // on, with its interrupt
   unsigned refused = 0;
+  trunnion::Increment<float> last;
   for (int samples = 0; samples < 2000;) {
     firmware::Sample raw;
     if (!ring.pop(raw)) {
@@ -52,8 +56,9 @@ int board::run() {
       reading.w(i) = static_cast<float>(c[static_cast<std::size_t>(i)]);
       reading.f(i) = static_cast<float>(c[static_cast<std::size_t>(i) + 3]);
     }
-    const auto input = correction.correct(reading, static_cast<float>(raw.temperature) * (1.0F / 256.0F));
-    if (navigator.add(trunnion::increment_of(input, kPeriod)) != trunnion::Status::kOk) ++refused;
+    const auto input = correction.checked(reading, static_cast<float>(raw.temperature) * (1.0F / 256.0F));
+    if (input.ok()) last = trunnion::increment_of(input.value(), kPeriod);  // else the last one again: time goes on
+    if (navigator.add(last) != trunnion::Status::kOk || !input.ok()) ++refused;
     ++samples;
   }
   board::print("bare metal: 2000 samples, refused ");

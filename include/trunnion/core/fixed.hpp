@@ -27,9 +27,9 @@ TRUNNION_INLINE constexpr std::int32_t saturate(std::int64_t wide) {
   return low == wide ? low : static_cast<std::int32_t>(wide < 0 ? -kMost - 1 : kMost);
 }
 
-/// wide / 2^shift to the nearest, a tie goes up; 0 <= shift < 63, and wide + 2^(shift-1) fits 64 bits.
+/// wide / 2^shift to the nearest, a tie goes up; 0 <= shift < 63. Does not overflow.
 TRUNNION_INLINE constexpr std::int64_t round_shift(std::int64_t wide, int shift) {
-  return shift == 0 ? wide : (wide + (std::int64_t{1} << (shift - 1))) >> shift;
+  return shift == 0 ? wide : (wide >> shift) + ((wide >> (shift - 1)) & 1);
 }
 
 namespace kernel {
@@ -57,7 +57,9 @@ struct Fixed {
     const double scaled = value * static_cast<double>(std::int64_t{1} << F);
     if (!(scaled > -2147483648.0)) return {scaled == scaled ? std::numeric_limits<std::int32_t>::min() : 0};
     if (scaled >= 2147483647.0) return {std::numeric_limits<std::int32_t>::max()};
-    return {static_cast<std::int32_t>(scaled + (scaled < 0.0 ? -0.5 : 0.5))};
+    const auto whole = static_cast<std::int64_t>(scaled);
+    const double rest = scaled - static_cast<double>(whole);
+    return {saturate(whole + (rest >= 0.5 ? 1 : rest <= -0.5 ? -1 : 0))};
   }
   [[nodiscard]] constexpr double value() const {
     return static_cast<double>(raw) / static_cast<double>(std::int64_t{1} << F);

@@ -10,6 +10,10 @@
 
 #pragma once
 
+#if defined(__FAST_MATH__) && !defined(TRUNNION_ALLOW_FAST_MATH)
+#error "trunnion looks for NaN and compensates its sums: compile what includes it without -ffast-math"
+#endif
+
 #include <Eigen/Geometry>
 #include <cstddef>
 

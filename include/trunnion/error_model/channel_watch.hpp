@@ -19,7 +19,7 @@ namespace trunnion {
 
 class ChannelWatch {
  public:
-  /// @param gyro_range, @param accel_range counts at which a reading is saturated, positive
+  /// @param gyro_range, @param accel_range counts at which a reading of either sign is saturated, 1 to 2^30
   /// @param stuck_samples for which a channel may read the same at every sixteenth, 16 to 4000: a second or so; a unit
   /// whose noise is below a count wants more
   ChannelWatch(std::int32_t gyro_range, std::int32_t accel_range, int stuck_samples)
@@ -29,32 +29,37 @@ class ChannelWatch {
                                               : stuck_samples > 4000 ? 250
                                                                      : stuck_samples / 16)) {}
 
-  /// @return kSaturated (which() has bits 0 to 5 of the channels), kStuck (likewise), or kOk. Saturation comes first.
+  /// @return kSaturated, kStuck or kOk. Saturation comes first.
   TRUNNION_INLINE Status look(const UnitOutput<std::int32_t>& y) {
     if ((++count_ & 15U) == 0U) look_for_stuck(y);
-    // negative where |y| > most; the magnitude without a branch, and without that of the least integer overflowing
-    const std::int32_t gyro = (gyro_most_ - size(y[0])) | (gyro_most_ - size(y[1])) | (gyro_most_ - size(y[2]));
-    const std::int32_t accel = (accel_most_ - size(y[3])) | (accel_most_ - size(y[4])) | (accel_most_ - size(y[5]));
-    if ((gyro | accel) < 0) return look_for_saturated(y);
+    const std::uint32_t gyro = beyond(gyro_most_, y[0]) | beyond(gyro_most_, y[1]) | beyond(gyro_most_, y[2]);
+    const std::uint32_t accel = beyond(accel_most_, y[3]) | beyond(accel_most_, y[4]) | beyond(accel_most_, y[5]);
+    if (((gyro | accel) >> 31U) != 0U) return look_for_saturated(y);
     return stuck_ == 0 ? Status::kOk : Status::kStuck;
   }
-  /// The channels of the last kSaturated or kStuck.
-  [[nodiscard]] std::uint8_t which() const { return saturated_ != 0 ? saturated_ : stuck_; }
+  /// The channels of the last kSaturated, as bits 0 to 5.
+  [[nodiscard]] std::uint8_t saturated() const { return saturated_; }
+  /// Those of kStuck.
+  [[nodiscard]] std::uint8_t stuck() const { return stuck_; }
 
  private:
-  /// |y|, or one less of a negative one.
-  static TRUNNION_INLINE std::int32_t size(std::int32_t y) { return y ^ (y >> 31); }
+  /// Its top bit is set where |y| > most, without a branch and whatever y is: what wraps has it set too.
+  static TRUNNION_INLINE std::uint32_t beyond(std::int32_t most, std::int32_t y) {
+    const auto m = static_cast<std::uint32_t>(most);
+    const auto u = static_cast<std::uint32_t>(y);
+    return (m - u) | (m + u);
+  }
 
   TRUNNION_COLD Status look_for_saturated(const UnitOutput<std::int32_t>& y) {
     saturated_ = 0;
     for (std::size_t i = 0; i < y.size(); ++i) {
-      if (size(y[i]) > (i < 3 ? gyro_most_ : accel_most_))
+      if ((beyond(i < 3 ? gyro_most_ : accel_most_, y[i]) >> 31U) != 0U)
         saturated_ = static_cast<std::uint8_t>(saturated_ | (1U << i));
     }
     return Status::kSaturated;
   }
   TRUNNION_COLD void look_for_stuck(const UnitOutput<std::int32_t>& y) {
-    stuck_ = saturated_ = 0;
+    stuck_ = 0;
     for (std::size_t i = 0; i < y.size(); ++i) {
       const auto low = static_cast<std::uint16_t>(y[i]);
       still_[i] = low != last_[i] ? std::uint8_t{0} : static_cast<std::uint8_t>(still_[i] + (still_[i] < 255 ? 1 : 0));

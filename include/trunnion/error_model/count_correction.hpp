@@ -44,13 +44,17 @@ struct CountCoefficients {
   };
   std::array<Axis, 3> gyro;
   std::array<Axis, 3> accel;
-  std::int32_t reference;  ///< T_0 [1/256 degC]
-  std::int16_t bits;       ///< B: readings are within +-2^(B-1)
-  std::int16_t shift;      ///< s
-  std::int32_t is_linear;  ///< 1: no quadratic, no cubic
-  std::int32_t reserved;   ///< 0: the size is a multiple of eight
+  std::int32_t reference = 0;  ///< T_0 [1/256 degC]
+  std::int16_t bits = 2;       ///< B: readings are within +-2^(B-1)
+  std::int16_t shift = 2;      ///< s
+  std::int32_t is_linear = 1;  ///< 1: no quadratic, no cubic
+  std::int32_t reserved = 0;   ///< the size is a multiple of eight
 
   [[nodiscard]] constexpr bool linear() const { return is_linear == 1; }
+  /// Whether (1) can be computed with them: of what comes from elsewhere.
+  [[nodiscard]] constexpr bool is_usable() const {
+    return bits >= 2 && shift >= 2 && bits + shift <= 32 && (is_linear == 0 || is_linear == 1);
+  }
 };
 
 /// The coefficients, and how far (1) may be from exact arithmetic: worst case, in counts out, for readings of B bits.
@@ -198,14 +202,15 @@ using LinearCountCorrection = BasicCountCorrection<false>;
 ///
 /// @param bits B in 2..30; @param fraction in 0..28, bits + fraction <= 30
 /// @return kOutOfRange for an argument outside that or not finite, a matrix without an inverse or with a row whose
-/// sizes sum to 1.99 or more, a g-sensitivity of a quarter of a gyro count by a count of force, a bias with its zero
+/// sizes sum to 1.99 or more, a g-sensitivity of an eighth of a gyro count by a count of force, a bias with its zero
 /// beyond the range of the counts, or a nonlinearity above 1/512 of full scale
 inline Result<CountCalibration> count_calibration(const InertialUnit<double>& unit, const UnitScale<double>& scale,
                                                   int bits, int fraction) {
   if (bits < 2 || fraction < 0 || bits + fraction > 30) return Status::kOutOfRange;
   constexpr double kMostRow = 1.99;
-  constexpr double kMostForce = 0.25;
-  constexpr double kMostBend = 1.0 / 512.0;
+  constexpr double kMostForce = 0.125;
+  constexpr double kMostBend = (1.0 - 1e-6) / 512.0;
+  constexpr double kMostReach = 3.9;  // full scales: four are the end of 64 bits
   const double out_per_in = std::ldexp(1.0, fraction);
   const double full_scale = std::ldexp(1.0, bits - 1);  // counts in
   CountCalibration made;
@@ -240,9 +245,13 @@ inline Result<CountCalibration> count_calibration(const InertialUnit<double>& un
     const auto in_counts = [&](const Vec3<double>& b) -> Vec3<double> {
       return -(A * (counts.scale * b)) * out_per_in;
     };
-    const Vec3<double> c = in_counts(triad.bias + Vec3<double>::Constant(counts.zero / counts.scale));
-    const Vec3<double> c_1 = in_counts(thermal_1) / 256.0;
     const Vec3<double> c_2 = in_counts(thermal_2) / 65536.0;
+    const Vec3<double> at_exact_t0 = in_counts(triad.bias + Vec3<double>::Constant(counts.zero / counts.scale));
+    // T_0 is held in 1/256 K; off it by e, c(t - e) in powers of t
+    const double e = unit.thermal.reference * 256.0 - static_cast<double>(k.reference);
+    const Vec3<double> slope_at_t0 = in_counts(thermal_1) / 256.0;
+    const Vec3<double> c = at_exact_t0 - e * slope_at_t0 + e * e * c_2;
+    const Vec3<double> c_1 = slope_at_t0 - 2.0 * e * c_2;
     const double range = full_scale / counts.scale;  // in SI
     const double full_out = full_scale * out_per_in;
     double bend = 0.0;   // the largest nonlinearity within reach, in full scales
@@ -267,10 +276,22 @@ inline Result<CountCalibration> count_calibration(const InertialUnit<double>& un
           force_error[static_cast<std::size_t>(i)];
       if (drift > 0.0) b += std::ldexp(0.5 * 32768.0 * (1.0 + 32768.0), -32);
     }
+    // the nonlinearity reaches farther than the linear part, and then is larger: eight rounds leave 1e-6 of it
+    const double linear_reach = reach;
+    for (int round = 0; round < 8; ++round) {
+      double most = 0.0;
+      for (int j = 0; j < 3; ++j)
+        most = std::max(
+            most,
+            reach * reach * (std::abs(triad.quadratic(j) * range) + reach * std::abs(triad.cubic(j) * range * range)));
+      reach = linear_reach + 1.0001 * largest_row * most;
+      fits = fits && reach < kMostReach;
+      if (!fits) return bound;
+    }
     for (int j = 0; j < 3; ++j) {
       const double quadratic = triad.quadratic(j) * range;
       const double cubic = triad.cubic(j) * range * range;
-      fits = fits && std::abs(quadratic) + std::abs(cubic) <= kMostBend;
+      fits = fits && std::abs(quadratic) + std::abs(cubic) < kMostBend;
       if (!fits) return bound;
       bend = std::max(bend, reach * reach * (std::abs(quadratic) + reach * std::abs(cubic)));
       slope = std::max(slope, largest_row * reach * (2.0 * std::abs(quadratic) + 3.0 * reach * std::abs(cubic)));

@@ -41,7 +41,7 @@ struct FlashBlock {
   std::uint32_t size = 0;
   std::uint32_t crc = 0;
   UnitCorrection<float>::Coefficients unit{};  ///< of raw counts where has_counts, else of readings in SI
-  std::int32_t has_counts = 0;                 ///< 1: counts below are filled
+  std::int32_t has_counts = 0;                 ///< 0: readings in SI; 1: raw counts, counts filled; 2: unfilled
   CountCoefficients counts{};
   std::array<char, 32> name{};  ///< model and serial, the rest zeros
 
@@ -69,6 +69,7 @@ inline Result<const FlashBlock*> read_flash_block(const void* address, std::size
   if (block->magic != FlashBlock::kMagic) return Status::kDamaged;
   if (block->version != FlashBlock::kVersion) return Status::kOtherVersion;
   if (block->size != sizeof(FlashBlock) || block->crc != block->check()) return Status::kDamaged;
+  if (block->has_counts < 0 || block->has_counts > 2 || !block->counts.is_usable()) return Status::kDamaged;
   return block;
 }
 

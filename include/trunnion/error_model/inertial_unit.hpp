@@ -133,16 +133,22 @@ class UnitCorrection {
     return corrected(reading, k_.accel.c + t * (k_.accel.c_1 + t * k_.accel.c_2),
                      k_.gyro.c + t * (k_.gyro.c_1 + t * k_.gyro.c_2));
   }
-  /// For readings that may be damaged. @return kOutOfRange when one is not finite
+  /// For readings that may be damaged. @return kOutOfRange when one is not finite, or so large that a sum is not
   [[nodiscard]] Result<InertialSample<T>> checked(const InertialSample<T>& reading) const {
-    const InertialSample<T> input = correct(reading);
-    if (!kernel::is_finite(kernel::triple(input.w)) || !kernel::is_finite(kernel::triple(input.f)))
-      return Status::kOutOfRange;
-    return input;
+    return finite(correct(reading));
+  }
+  [[nodiscard]] Result<InertialSample<T>> checked(const InertialSample<T>& reading, const T& temperature) const {
+    return finite(correct(reading, temperature));
   }
 
  private:
   using Triple = kernel::Triple<T>;
+
+  static Result<InertialSample<T>> finite(const InertialSample<T>& input) {
+    if (!kernel::is_finite(kernel::triple(input.w)) || !kernel::is_finite(kernel::triple(input.f)))
+      return Status::kOutOfRange;
+    return input;
+  }
 
   template <class U>
   static Axes axes(const Mat3<U>& A, const Vec3<U>& bias, const Vec3<U>& linear, const Vec3<U>& quadratic,

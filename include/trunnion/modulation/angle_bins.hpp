@@ -31,16 +31,18 @@ class AngleBins {
     TRUNNION_ONE_ADDRESS(bin);
     kernel::add<false>(bin->sum, sample);
     ++bin->count;
-    return --left_ > 0 ? Status::kOk : time_out();
+    return --left_ > 0 ? Status::kOk : run_out();
   }
 
   /// A sample with a pulse in it; as CountDemodulator::add_with_pulse().
   bool add_with_pulse(const UnitOutput<std::int32_t>& sample, BinaryAngle phase, const IndexPulse& pulse) {
-    constexpr double kHalf = kPi / Bins;
-    constexpr double kGain = 1.0 + kHalf * kHalf * (1.0 / 6.0 + kHalf * kHalf * 7.0 / 360.0);
+    if (pulse.before < 0) {
+      (void)add(sample, phase);
+      return false;
+    }
     for (std::uint32_t k = 0; k < static_cast<std::uint32_t>(Bins); ++k) {
       const SinCos phasor = sin_cos((k << kShift) + (BinaryAngle{1} << (kShift - 1)));
-      turn_.add_many(bins_[k].sum, bins_[k].count, widened(phasor.sine.raw, kGain), widened(phasor.cosine.raw, kGain));
+      turn_.add_many(bins_[k].sum, bins_[k].count, widened(phasor.sine.raw), widened(phasor.cosine.raw));
     }
     empty();
     return turn_.add_with_pulse(sample, sin_cos(phase), pulse);
@@ -60,13 +62,18 @@ class AngleBins {
     std::int32_t count = 0;
   };
 
-  TRUNNION_COLD Status time_out() {
+  TRUNNION_COLD Status run_out() {
+    const bool first = left_ < 0;
     restart();
-    return Status::kTimeOut;
+    left_ -= first ? 1 : 0;
+    return first ? Status::kOk : Status::kTimeOut;
   }
-  static std::int64_t widened(std::int32_t part, double gain) {
-    return static_cast<std::int64_t>(part) +
-           ((static_cast<std::int64_t>(part) * static_cast<std::int32_t>((gain - 1.0) * 1073741824.0)) >> 30);
+  /// @p part over sinc(pi / Bins)
+  static std::int64_t widened(std::int32_t part) {
+    constexpr double kHalf = kPi / Bins;
+    constexpr double kExcess = kHalf * kHalf * (1.0 / 6.0 + kHalf * kHalf * 7.0 / 360.0);
+    constexpr auto kMore = static_cast<std::int32_t>(kExcess * 1073741824.0);
+    return part + ((static_cast<std::int64_t>(part) * kMore) >> 30);
   }
   void empty() {
     bins_ = {};
@@ -74,7 +81,7 @@ class AngleBins {
   }
 
   std::array<Bin, static_cast<std::size_t>(Bins)> bins_{};
-  std::int32_t left_ = MostSamples;
+  std::int32_t left_ = 0;  // zero before the first sample, so that a static one takes no flash
   CountDemodulator<Bits, MostSamples> turn_;
 };
 

@@ -7,7 +7,7 @@
 /// m = x + i y of gyros and of accelerometers:
 ///
 ///   a = sum m,   b = sum exp(i phi) m,   e = sum exp(i phi)       over a turn, whole samples on 64 bits       ... (1)
-///   u = (g b - g e a) / (1 - |g e|^2),   bias = (a - g e* g b) / (1 - |g e|^2),   g = 1 / sinc                 ... (2)
+///   u = g (b - e a) / (1 - |e|^2),   bias = (a - e* b) / (1 - |e|^2),   g = 1 / sinc,   of the sums' means     ... (2)
 ///
 /// A sample costs additions and products; every division is once a turn, and only when its result is asked for. Of the
 /// sample that a pulse falls in, whole counts go to either side and none is lost: the sums are exact. The phasor has as
@@ -33,7 +33,8 @@ template <class T>
 struct TurnSplit {
   UnitOutput<T> body{};  ///< u of (2) in body axes; along the axis the mean
   UnitOutput<T> unit{};  ///< bias of (2) in p; along the axis the mean
-  bool valid = false;    ///< false: no turn, less than four samples in one, or a speed that changed too much within it
+  /// false: no turn, less than four samples in one, a speed that changed too much within it, or a doubtful record.
+  bool valid = false;
 };
 
 namespace kernel {
@@ -79,12 +80,14 @@ TRUNNION_INLINE std::int32_t share_of(std::int32_t value, std::int32_t share) {
   return static_cast<std::int32_t>((static_cast<std::int64_t>(value) * share) >> 16);
 }
 
-/// Of a processor's own conversions, which take 32 bits: no library, the same bits everywhere. To a rounding more than
-/// one.
+/// By a processor's own conversions, which take 32 bits: no library, the same bits everywhere. To three roundings.
 template <class T>
-TRUNNION_INLINE T real(std::int64_t value) {
-  const auto high = static_cast<std::int32_t>(value >> 32);
-  return static_cast<T>(high) * T(4294967296.0) + static_cast<T>(static_cast<std::uint32_t>(value));
+T real(std::int64_t value) {
+  const auto size =
+      value < 0 ? std::uint64_t{0} - static_cast<std::uint64_t>(value) : static_cast<std::uint64_t>(value);
+  const T sum = static_cast<T>(static_cast<std::uint32_t>(size >> 32U)) * T(4294967296.0) +
+                static_cast<T>(static_cast<std::uint32_t>(size));
+  return value < 0 ? -sum : sum;
 }
 
 /// 1 / sinc of half of @p turns in @p samples (65536ths), Q30: what the mean over a sample lost of a vector that turns.
@@ -92,7 +95,8 @@ constexpr std::int64_t inverse_sinc(std::int64_t samples, std::int64_t turns) {
   constexpr auto kPi2 = static_cast<std::int64_t>(kPi * kPi * 268435456.0);  // Q28
   const std::int64_t per_sample = divided(turns << 46, samples);             // Q30
   const std::int64_t a2 = (((per_sample * per_sample) >> 30) * kPi2) >> 28;  // (pi turns / samples)^2, Q30
-  return (std::int64_t{1} << 30) + a2 / 6 + ((a2 * a2) >> 30) * 7 / 360;
+  const std::int64_t a4 = (a2 * a2) >> 30;
+  return (std::int64_t{1} << 30) + a2 / 6 + a4 * 7 / 360 + ((a4 * a2) >> 30) * 31 / 15120;
 }
 
 /// @p a + i @p b times the phasor.
@@ -114,6 +118,16 @@ struct TurnRecord {
   std::int16_t turns = 0;    ///< between the two pulses, positive
   bool saturated = false;    ///< mark_saturated() was called in it
   bool reversed = false;     ///< the axial gyro turned against the phase: one of the two has the wrong sign
+  std::int16_t passed_over =
+      0;  ///< pulses within it that were none (AxialPhase): one every turn, and turns are miscounted
+
+  /// More pulses than samples without: the index is read with the wrong polarity.
+  [[nodiscard]] bool index_inverted() const { return passed_over > samples / 131072; }
+  /// A phase off by more than 0.3 rad, of the wrong sign, or by an index that is none.
+  [[nodiscard]] bool is_doubtful() const {
+    constexpr std::int32_t kFar = 205074450;
+    return ahead > kFar || ahead < -kFar || reversed || index_inverted();
+  }
 };
 
 /// @tparam Bits of the readings, sign included: |reading| <= 2^(Bits-1)
@@ -124,7 +138,7 @@ class CountDemodulator {
 
  public:
   static_assert(Bits >= 8 && Bits <= 30, "readings have 8 to 30 bits");
-  static_assert(MostSamples >= 8 && MostSamples < 32768, "a turn has 8 to 32767 samples");
+  static_assert(MostSamples >= 8 && MostSamples < 32767, "a turn has 8 to 32766 samples");
   static constexpr int kPhasorBits = kRoom < 31 ? kRoom : 31;
   static_assert(kPhasorBits >= 22,
                 "a turn of so many samples of so many bits overflows its sums: fewer of one of them");
@@ -144,13 +158,18 @@ class CountDemodulator {
     return time_out();
   }
 
-  /// A sample with a pulse in it, of which turning_phase.hpp has seen that it is one.
+  /// A sample with a pulse in it, of which turning_phase.hpp has seen that it is one; with a pulse that is none, as
+  /// add().
   /// @return whether a turn is complete: it stands in record(), until the next
   TRUNNION_COLD bool add_with_pulse(const UnitOutput<std::int32_t>& sample, const SinCos& phasor,
                                     const IndexPulse& pulse) {
+    if (pulse.before < 0 || pulse.before > kOne) {
+      (void)add(sample, phasor);
+      return false;
+    }
     const std::int32_t s = phasor.sine.raw >> kLess;
     const std::int32_t c = phasor.cosine.raw >> kLess;
-    const bool complete = started_ && pulse.turns != 0;
+    const bool complete = started_ && pulse.turns != 0 && pulse.turns > -32768 && pulse.turns < 32768;
     UnitOutput<std::int32_t> part{};
     for (std::size_t i = 0; i < part.size(); ++i) part[i] = kernel::share_of(sample[i], pulse.before);
     add_part(part, s, c, pulse.before);
@@ -160,6 +179,7 @@ class CountDemodulator {
       record_.ahead = pulse.ahead;
       record_.turns = static_cast<std::int16_t>(pulse.turns < 0 ? -pulse.turns : pulse.turns);
       record_.saturated = saturated_;
+      record_.passed_over = static_cast<std::int16_t>(pulse.passed_over < 32767 ? pulse.passed_over : 32767);
       record_.reversed = (sums_.a[2] < 0) != (pulse.turns < 0);
     }
     restart();
@@ -201,7 +221,7 @@ class CountDemodulator {
     for (std::size_t i = 0; i < 6; ++i) {
       const std::int64_t sum = i < 4 ? r.sums.b[i] >> (kPhasorBits - 16 - kFraction)
                                      : r.sums.e[i - 4] * (std::int64_t{1} << (46 - kPhasorBits));
-      b[i] = saturate((kernel::divided(sum, n) * gain) >> 30);
+      b[i] = saturate(kernel::divided(sum, n));
     }
     // the phase ran ahead evenly: by half of it on average
     const SinCos back = sin_cos(static_cast<BinaryAngle>(-(r.ahead / 2)));
@@ -210,13 +230,13 @@ class CountDemodulator {
     const std::int64_t re = b[4];
     const std::int64_t im = b[5];
     const std::int64_t rest = kUnit - ((re * re + im * im) >> 30);
-    result.valid = rest > kUnit / 2;
+    result.valid = rest > kUnit / 2 && !r.is_doubtful();
     for (std::size_t i = 0; i < 4 && result.valid; i += 2) {
       const std::size_t k = i == 0 ? 0 : 3;
       const std::int64_t ax = mean[k];
       const std::int64_t ay = mean[k + 1];
-      result.body[k] = saturate(kernel::divided(b[i] * kUnit - (re * ax - im * ay), rest));
-      result.body[k + 1] = saturate(kernel::divided(b[i + 1] * kUnit - (re * ay + im * ax), rest));
+      result.body[k] = gained(kernel::divided(b[i] * kUnit - (re * ax - im * ay), rest), gain);
+      result.body[k + 1] = gained(kernel::divided(b[i + 1] * kUnit - (re * ay + im * ax), rest), gain);
       result.unit[k] = saturate(kernel::divided(ax * kUnit - (re * b[i] + im * b[i + 1]), rest));
       result.unit[k + 1] = saturate(kernel::divided(ay * kUnit - (re * b[i + 1] - im * b[i]), rest));
     }
@@ -234,8 +254,8 @@ class CountDemodulator {
     const T n = T(1) / (static_cast<T>(r.samples) * T(kSmall));
     const T a = T(kPi) * static_cast<T>(r.turns) * n;
     const T a2 = a * a;
-    const T per_turning = n * T(1.0 / static_cast<double>(std::int64_t{1} << kPhasorBits)) *
-                          (T(1) + a2 * (T(1.0 / 6.0) + a2 * T(7.0 / 360.0)));
+    const T gain = T(1) + a2 * (T(1.0 / 6.0) + a2 * (T(7.0 / 360.0) + a2 * T(31.0 / 15120.0)));
+    const T per_turning = n * T(1.0 / static_cast<double>(std::int64_t{1} << kPhasorBits));
     // of a small angle its sine and cosine to fourth order: half a radian at most
     const T back = static_cast<T>(r.ahead) * T(-kPi / 4294967296.0);
     const T back2 = back * back;
@@ -247,7 +267,7 @@ class CountDemodulator {
     const T re = turned_x(r.sums.e[0], r.sums.e[1]);
     const T im = turned_x(r.sums.e[1], -r.sums.e[0]);
     const T rest = T(1) - (re * re + im * im);
-    result.valid = rest > T(0.5);
+    result.valid = rest > T(0.5) && !r.is_doubtful();
     const T over = T(1) / rest;
     for (std::size_t i = 0; i < 2; ++i) {
       const std::size_t k = 3 * i;
@@ -255,8 +275,8 @@ class CountDemodulator {
       const T ay = kernel::real<T>(r.sums.a[k + 1]) * n;
       const T bx = turned_x(r.sums.b[2 * i], r.sums.b[2 * i + 1]);
       const T by = turned_x(r.sums.b[2 * i + 1], -r.sums.b[2 * i]);
-      result.body[k] = (bx - (re * ax - im * ay)) * over;
-      result.body[k + 1] = (by - (re * ay + im * ax)) * over;
+      result.body[k] = (bx - (re * ax - im * ay)) * (gain * over);
+      result.body[k + 1] = (by - (re * ay + im * ax)) * (gain * over);
       result.unit[k] = (ax - (re * bx + im * by)) * over;
       result.unit[k + 1] = (ay - (re * by - im * bx)) * over;
       result.body[k + 2] = result.unit[k + 2] = kernel::real<T>(r.sums.a[k + 2]) * n;
@@ -271,7 +291,8 @@ class CountDemodulator {
     return split_as<T>(record_);
   }
 
-  /// A reading was at the end of its range: the open turn is marked.
+  /// A reading was at the end of its range: the open turn is marked. Of a sample with a pulse, call it before and
+  /// after.
   void mark_saturated() { saturated_ = true; }
   /// Forgets the open turn.
   void restart() {
@@ -282,8 +303,11 @@ class CountDemodulator {
   }
 
  private:
+  static std::int32_t gained(std::int64_t value, std::int64_t gain) {
+    return saturate(round_shift(std::int64_t{saturate(value)} * gain, 30));
+  }
   /// There is one, and it has four samples a turn.
-  static bool is_sampled(const TurnRecord& r) { return r.turns > 0 && r.samples >= 4 * kOne * r.turns; }
+  static bool is_sampled(const TurnRecord& r) { return r.turns > 0 && r.samples >= std::int64_t{4} * kOne * r.turns; }
 
   TRUNNION_COLD Status time_out() {
     restart();

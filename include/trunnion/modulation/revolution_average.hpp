@@ -17,8 +17,9 @@
 /// so that the scatter of (1) is that of white noise over T, not that of the sampling (docs/theory/modulation.md).
 /// The axial sum tells how many turns lie between two pulses: a pulse that bounces or has no business there is passed
 /// over, a missed one noticed, and the mean over two or three turns is as good as over one. It tells as long as the
-/// body itself turns about the axis by less than a quarter of the platform's speed; beyond, no pulse fits, which is not
-/// quiet. In integers, r counts in 65536ths and sums are exact; a sample costs additions alone.
+/// body itself turns about the axis by less than a quarter of the platform's speed; beyond, pulses are passed over, or
+/// two turns taken for one: a bounce every turn is the sign of it. In integers, r counts in 65536ths and sums are
+/// exact; a sample costs additions alone.
 
 #pragma once
 

@@ -8,12 +8,16 @@
 ///   gyro:      phi = sum of z 2^64 / Z,   Z what z sums to over the last turn                              ... (2)
 ///
 /// (2) ends every turn where the pulse says; how far it was off is what the demodulation is told. A pulse that is not
-/// within a quarter of a whole number of turns from the last is a bounce, and one that was missed is noticed, as in
-/// revolution_average.hpp.
+/// within a quarter of a whole number of turns from the last, or that would make a turn of less than 0.7 or more
+/// than 1.4 of the nominal sum, is passed over; one that was missed is noticed. When three turns have gone by without
+/// one that fits, the next begins anew. A nominal sum that is twice the true one, or a body that turns with half the
+/// platform's speed, makes two turns one: then a pulse is passed over every turn, which passed_over shows and nothing
+/// else.
 
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 #include "trunnion/core/binary_angle.hpp"
 #include "trunnion/core/status.hpp"
@@ -23,9 +27,10 @@ namespace trunnion {
 
 /// A pulse that lies in a sample.
 struct IndexPulse {
-  std::int32_t before = -1;  ///< 65536ths of the sample before the pulse, 0 to 65536; negative: there is none
-  std::int32_t ahead = 0;    ///< how far the phase was beyond whole turns at it: 2^32 is a turn
-  std::int32_t turns = 0;    ///< since the last pulse, signed as the phase; 0: this is the first
+  std::int32_t before = -1;      ///< 65536ths of the sample before the pulse, 0 to 65536; negative: there is none
+  std::int32_t ahead = 0;        ///< how far the phase was beyond whole turns at it: 2^32 is a turn
+  std::int32_t turns = 0;        ///< since the last pulse, signed as the phase; 0: this is the first
+  std::int32_t passed_over = 0;  ///< pulses since then that were none
 };
 
 class EncoderPhase {
@@ -45,13 +50,23 @@ class EncoderPhase {
     const auto moved = static_cast<std::int32_t>(angle - from);
     last_ = angle;
     Step step{from + static_cast<BinaryAngle>(moved / 2), moved, {}};
-    if (moved >= 0 ? angle < from : angle > from) step.pulse = {share(from, moved), 0, moved < 0 ? -1 : 1};
+    if (moved >= 0 ? angle < from : angle > from) step.pulse = pass_zero(from, moved);
     return step;
   }
   /// Samples were lost: the next one begins at @p angle.
-  void restart(BinaryAngle angle) { last_ = angle; }
+  void restart(BinaryAngle angle) {
+    last_ = angle;
+    direction_ = 0;
+  }
 
  private:
+  /// A turn lies between two passages in one direction; between one and the next in the other lies none.
+  TRUNNION_COLD IndexPulse pass_zero(BinaryAngle from, std::int32_t moved) {
+    const std::int32_t direction = moved < 0 ? -1 : 1;
+    const IndexPulse pulse{share(from, moved), 0, direction == direction_ ? direction : 0, 0};
+    direction_ = direction;
+    return pulse;
+  }
   static std::int32_t share(BinaryAngle from, std::int32_t moved) {
     std::uint32_t way = moved > 0 ? 0U - from : from;
     std::uint32_t size = moved > 0 ? static_cast<std::uint32_t>(moved) : 0U - static_cast<std::uint32_t>(moved);
@@ -63,13 +78,14 @@ class EncoderPhase {
   }
 
   BinaryAngle last_;
+  std::int32_t direction_ = 0;  // of the last passage
 };
 
 class AxialPhase {
  public:
-  /// @param full_turn what the axial output of one turn sums to, 2 pi / (scale * sample period), positive; until the
-  /// first turn says it
-  explicit AxialPhase(std::int64_t full_turn) { learn(full_turn, 1); }
+  /// @param full_turn what the axial output of one turn sums to: 2 pi rad times counts by rad/s times samples a second;
+  /// to 15 %, 16 or more
+  explicit AxialPhase(std::int64_t full_turn) : full_turn_(full_turn) { learn(full_turn, 1); }
 
   /// The next sample. @return phi in its middle
   TRUNNION_INLINE BinaryAngle middle(std::int32_t axial) {
@@ -94,12 +110,15 @@ class AxialPhase {
     const auto ahead = static_cast<std::int32_t>(at >> 32U);
     turns += ahead < 0 ? 1 : 0;  // the nearest whole number
     constexpr std::int32_t kQuarter = 1 << 30;
-    if (started_ && (turns == 0 || ahead > kQuarter || ahead < -kQuarter)) {
-      ++bounces_;
-      return {};
-    }
-    const IndexPulse result{before, ahead, started_ ? turns : 0};
     const std::int64_t late = (static_cast<std::int64_t>(axial) * (65536 - before)) / 65536;
+    if (started_ && (turns == 0 || ahead > kQuarter || ahead < -kQuarter || !is_likely(sum_ - late, turns))) {
+      if (turns > -kLostAfter && turns < kLostAfter) {
+        if (bounces_ < std::numeric_limits<std::int32_t>::max()) ++bounces_;
+        return {};
+      }
+      started_ = false;  // whatever the gyro says, the index is here: begin anew
+    }
+    const IndexPulse result{before, ahead, started_ ? turns : 0, bounces_};
     if (started_) learn(sum_ - late, turns);
     sum_ = late;
     phase_ = static_cast<std::uint64_t>(late) * per_count_;  // by what has just been learnt
@@ -112,7 +131,7 @@ class AxialPhase {
   /// Turns since the last pulse by the gyro: two or more, and the pulse is missing.
   [[nodiscard]] int turns_without_pulse() const { return turns_ < 0 ? -(turns_ + 1) : turns_; }
   /// Pulses passed over since the last: one in most samples, and the index is read with the wrong polarity.
-  [[nodiscard]] int bounces() const { return bounces_; }
+  [[nodiscard]] std::int32_t bounces() const { return bounces_; }
   /// The axis was not followed for a while.
   void restart() {
     started_ = false;
@@ -121,6 +140,10 @@ class AxialPhase {
   }
 
  private:
+  [[nodiscard]] bool is_likely(std::int64_t sum, std::int32_t turns) const {
+    const std::int64_t a_turn = (sum < 0 ? -sum : sum) / (turns < 0 ? -turns : turns);
+    return a_turn > full_turn_ - full_turn_ * 3 / 10 && a_turn < full_turn_ + full_turn_ * 4 / 10;
+  }
   /// 2^64 turns / |sum|: the sum's own sign stays with the axial output.
   void learn(std::int64_t sum, std::int32_t turns) {
     const auto size = static_cast<std::uint64_t>(sum < 0 ? -sum : sum);
@@ -128,12 +151,15 @@ class AxialPhase {
     if (size >= 16U * count) per_count_ = (~std::uint64_t{0} / size) * count;
   }
 
+  static constexpr std::int32_t kLostAfter = 3;  // turns
+
+  std::int64_t full_turn_;
   std::uint64_t phase_ = 0;  // 2^64 is a turn
   std::uint64_t per_count_ = 0;
   std::int64_t step_ = 0;
   std::int64_t sum_ = 0;
   std::int32_t turns_ = 0;  // floor of the phase since the last pulse
-  int bounces_ = 0;
+  std::int32_t bounces_ = 0;
   bool started_ = false;
 };
 

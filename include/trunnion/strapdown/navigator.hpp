@@ -40,7 +40,7 @@ class Navigator {
       : update_(T(kSamples) * period),
         earth_turn_(T(kEarthRate) * update_),
         x_(start),
-        largest_(update_ > T(0) && update_ - update_ == T(0) ? T(1) : T(-1)),
+        zero_(update_ > T(0) ? update_ - update_ : std::numeric_limits<T>::quiet_NaN()),
         long_(update_ > T(kLongUpdate)) {
     using std::fma;
     gravity_.sum = T(kEquatorGravity) * update_;
@@ -55,7 +55,7 @@ class Navigator {
   /// every one when the period is not positive
   Status add(const Increment<T>& sample) {
     const T sum = sample.angle.sum() + sample.velocity.sum();
-    if (!(sum - sum == T(0)) || !(sample.angle.squaredNorm() <= largest_)) return Status::kOutOfRange;
+    if (!(sum - sum == zero_) || !(sample.angle.squaredNorm() <= T(1))) return Status::kOutOfRange;
     if constexpr (kSamples == 1) {
       advance(algorithm_({sample}));
       updated_ = true;
@@ -163,7 +163,7 @@ class Navigator {
   Triple w_en_{};  // of the last update
   Triple w_en_before_{};
   Triple dv_before_{};
-  T largest_;  // |angle|^2 of a sample
+  T zero_;  // NaN when the period is none: it then refuses every sample
   bool started_ = false;
   bool long_;
 };

@@ -16,12 +16,13 @@
 ///   v <- v + u + g D + v_mean x (2 w_ie + w_en) D + (u - s/D) x (w_ie + w_en) D                         ... (4)
 ///   q_nb <- Exp(-(w_ie + w_en) D) q_nb,  q_en <- q_en Exp(w_en D),  h <- h - D (v_mean)_z               ... (5)
 ///
-/// with w_ie and w_en in the middle of D, g at its start. What (4) leaves out is of third order in (w_ie + w_en) D,
-/// 1e-5 at 0.1 s; no trigonometric function anywhere, and no branch that depends on a sample but the refusals. Savage,
-/// J. Guidance 21 (1998), 19 and 208 (two-speed integration); docs/theory/strapdown.md, section 3. Navigator is the
-/// finer one.
+/// with w_ie and w_en in the middle of D, g at its start. What (4) leaves out is of second order in D; no trigonometric
+/// function but at the border, and no branch that depends on a sample but the refusals. Savage, J. Guidance 21 (1998),
+/// 19 and 208 (two-speed integration); docs/theory/strapdown.md, section 3. Navigator is the finer one.
 
 #pragma once
+
+#include <limits>
 
 #include "trunnion/core/status.hpp"
 #include "trunnion/strapdown/body_motion.hpp"
@@ -35,15 +36,18 @@ class TwoSpeedNavigator {
   /// @param start a NavigationState in any scalar: what T cannot hold of a double position is kept beside it; or a
   /// WanderState<T>
   /// @param period of one sample [s], positive
-  /// @param updates between slow steps, of two samples each: 0.1 s or so
+  /// @param updates between slow steps, of two samples each: 0.1 s or so, at most a second
   template <class Start>
   TwoSpeedNavigator(const Start& start, const T& period, int updates)
       : update_(T(2) * period),
         updates_(static_cast<std::int16_t>(updates < 1       ? 1
                                            : updates > 10000 ? 10000
                                                              : updates)),
-        zero_(update_ > T(0) ? update_ - update_ : std::numeric_limits<T>::quiet_NaN()),
-        x_(start) {}
+        push_(update_ > T(0) ? T(kPush) + (update_ - update_) : std::numeric_limits<T>::quiet_NaN()),
+        x_(start) {
+    if (T(updates_) * update_ > T(1))
+      updates_ = update_ < T(1) ? static_cast<std::int16_t>(T(1) / update_) : std::int16_t{1};
+  }
 
   /// Takes the next sample; every second one completes an update, and updated() is true.
   /// @return as of the other one
@@ -61,8 +65,9 @@ class TwoSpeedNavigator {
   }
 
   /// Takes both samples of an update.
-  /// @return kOutOfRange, and nothing changed, for a sample that is not finite, two that turn by more than half a
-  /// radian, and every one when the period is not positive
+  /// @return kOutOfRange, and neither has gone in, for a sample that is not finite, two that turn by more than half a
+  /// radian or push by more than 100 m/s, and every one when the period is not positive; kOutOfRange, ten times a
+  /// second, when the velocity has passed 100 km/s or is not a number: the state is none
   TRUNNION_INLINE Status add(const Increment<T>& first, const Increment<T>& second) {
     using namespace kernel;
     const Triple theta = triple(second.angle);
@@ -75,8 +80,8 @@ class TwoSpeedNavigator {
     const T phi2 = dot(phi, phi);
     const Triple sum = v_first + v;
     const Triple dv = add_cross(add_cross(sum, theta_k, v), v_k, theta);
-    // zero times infinity, or NaN, is NaN: one comparison for all
-    if (!(phi2 + zero_ * (dv.x + dv.y + dv.z) <= T(0.25))) return Status::kOutOfRange;
+    // one comparison for all: NaN and infinity fail it, and so do 100 m/s
+    if (!(phi2 + push_ * dot(dv, dv) <= T(0.25))) return Status::kOutOfRange;
     const auto factor = RotationFactors<T>::short_series(phi2);
     const Triple turned = cross(phi, sum);
     const Triple push = add_scaled(add_scaled(dv, factor.first, turned), factor.second, cross(phi, turned));
@@ -117,7 +122,12 @@ class TwoSpeedNavigator {
     x_.correct(phi, dv);
   }
 
-  /// Eq. (3)-(5): add() takes it when it is due. @return kOk
+ private:
+  using Triple = kernel::Triple<T>;
+  using Quad = kernel::Quad<T>;
+  using Frame = kernel::WanderAzimuth<T>;
+
+  /// Eq. (3)-(5). @return kOutOfRange when the velocity is none
   TRUNNION_COLD Status slow_step() {
     using namespace kernel;
     const T D = T(count_) * update_;
@@ -159,13 +169,8 @@ class TwoSpeedNavigator {
     turn(x_.q_nb, T(-1) * zeta, true);
     u_ = sum_u_ = Triple{T(0), T(0), T(0)};
     count_ = 0;
-    return Status::kOk;
+    return dot(x_.velocity.sum, x_.velocity.sum) <= T(1e10) ? Status::kOk : Status::kOutOfRange;
   }
-
- private:
-  using Triple = kernel::Triple<T>;
-  using Quad = kernel::Quad<T>;
-  using Frame = kernel::WanderAzimuth<T>;
 
   /// Exp(phi) q or q Exp(phi) of a small phi, and the length of q brought back to one.
   TRUNNION_COLD static void turn(kernel::CompensatedSum<Quad>& q, const Triple& phi, bool from_left) {
@@ -177,11 +182,13 @@ class TwoSpeedNavigator {
     kernel::add_seldom<T>(q, Quad{turned.w, turned.v + twice});
   }
 
+  static constexpr double kPush = 0.25 / (100.0 * 100.0);
+
   T update_;  // s
   std::int16_t updates_;
   std::int16_t count_ = 0;
   bool updated_ = true;
-  T zero_;          // NaN when the period is none: it then refuses every sample
+  T push_;          // takes 100 m/s for half a radian; NaN when the period is none: it then refuses every update
   Triple u_{};      // since the last slow step, eq. (2)
   Triple sum_u_{};  // of u after each update: s is update_ times this, less half of the last u
   Triple w_en_{};   // in the middle of the last slow step

@@ -87,8 +87,8 @@ struct WanderAzimuth {
   }
 
   explicit WanderAzimuth(const WanderState<T>& start)
-      : q_nb{quad<T>(start.q_nb), {}},
-        q_en{quad<T>(start.q_en), {}},
+      : q_nb{quad<T>(start.q_nb.normalized()), {}},
+        q_en{quad<T>(start.q_en.normalized()), {}},
         velocity{triple<T>(start.velocity), {}},
         height{start.height, T(0)} {}
   /// Without what the sums leave out.
@@ -179,5 +179,11 @@ struct WanderAzimuth {
 };
 
 }  // namespace kernel
+
+/// @p state for a start without trigonometric functions: a host computes it, a firmware goes on from it.
+template <class T, class U>
+WanderState<T> wander_state(const NavigationState<U>& state) {
+  return kernel::WanderAzimuth<T>(state).wander_state();
+}
 
 }  // namespace trunnion
