@@ -119,8 +119,9 @@ TEST(CountDemodulator, TellsTheBodyFromTheUnit) {
     Platform p;
     p.turns_a_sample = speed;
     const auto worst = with_encoder(p, static_cast<int>(9.5 / std::abs(speed)));
-    // of 100,000; half a count a sample, and the eighth order of 1 / sinc where a sample is a quarter of a turn
-    const double most = 4.0 + 1e5 * std::pow(kPi * speed, 8) * 127.0 / 604800.0;
+    // of 100,000: half a count a sample, either pulse to 6e-5 of a sample, and the eighth order of 1 / sinc where a
+    // sample is a quarter of a turn
+    const double most = 4.0 + 2.0 * 6.0 * std::abs(speed) + 1e5 * std::pow(kPi * std::abs(speed), 8) * 127.0 / 604800.0;
     EXPECT_LT(worst[0], most) << speed;
     EXPECT_LT(worst[1], most) << speed;
   }

@@ -15,6 +15,7 @@
 #endif
 
 #include <Eigen/Geometry>
+#include <cmath>
 #include <cstddef>
 
 #include "trunnion/core/linear.hpp"
@@ -120,6 +121,13 @@ TRUNNION_INLINE Triple<T> add_cross(const Triple<T>& s, const Triple<T>& a, cons
 template <class T>
 TRUNNION_INLINE Triple<T> add_scaled(const Triple<T>& s, const T& k, const Triple<T>& a) {
   return {s.x + k * a.x, s.y + k * a.y, s.z + k * a.z};
+}
+
+/// Of length one. Not inlined: a start is made once.
+template <class T>
+TRUNNION_COLD Quad<T> normalized(const Quad<T>& q) {
+  using std::sqrt;
+  return (T(1) / sqrt(dot(q, q))) * q;
 }
 
 /// q a q^* of a unit quaternion q = (w, v).

@@ -24,6 +24,8 @@ class AngleBins {
   static constexpr int kShift = 32 - kernel::bits_of(Bins);
 
  public:
+  AngleBins() { empty(); }  // not by the linker: a static one takes no flash
+
   /// A sample without a pulse. @param phase of its middle
   /// @return kTimeOut when no pulse came for MostSamples: the open turn is forgotten
   TRUNNION_INLINE Status add(const UnitOutput<std::int32_t>& sample, BinaryAngle phase) {
@@ -31,7 +33,7 @@ class AngleBins {
     TRUNNION_ONE_ADDRESS(bin);
     kernel::add<false>(bin->sum, sample);
     ++bin->count;
-    return --left_ > 0 ? Status::kOk : run_out();
+    return --left_ != 0U ? Status::kOk : run_out();
   }
 
   /// A sample with a pulse in it; as CountDemodulator::add_with_pulse().
@@ -63,10 +65,8 @@ class AngleBins {
   };
 
   TRUNNION_COLD Status run_out() {
-    const bool first = left_ < 0;
     restart();
-    left_ -= first ? 1 : 0;
-    return first ? Status::kOk : Status::kTimeOut;
+    return Status::kTimeOut;
   }
   /// @p part over sinc(pi / Bins)
   static std::int64_t widened(std::int32_t part) {
@@ -75,13 +75,13 @@ class AngleBins {
     constexpr auto kMore = static_cast<std::int32_t>(kExcess * 1073741824.0);
     return part + ((static_cast<std::int64_t>(part) * kMore) >> 30);
   }
-  void empty() {
+  TRUNNION_COLD void empty() {
     bins_ = {};
-    left_ = MostSamples;
+    left_ = static_cast<std::uint32_t>(MostSamples);
   }
 
   std::array<Bin, static_cast<std::size_t>(Bins)> bins_{};
-  std::int32_t left_ = 0;  // zero before the first sample, so that a static one takes no flash
+  std::uint32_t left_;
   CountDemodulator<Bits, MostSamples> turn_;
 };
 

@@ -20,7 +20,7 @@ template <class T>
 class Attitude {
  public:
   /// @param start finite and not zero; its length is made one
-  explicit Attitude(const Quaternion<T>& start) : q_(kernel::quad(start.normalized())) {}
+  explicit Attitude(const Quaternion<T>& start) : q_(kernel::normalized(kernel::quad(start))) {}
 
   /// @param first, @param second integrals of w_ib_b over the two samples [rad]
   /// @return kOutOfRange, and nothing changed, when they are not finite or turn by more than half a radian

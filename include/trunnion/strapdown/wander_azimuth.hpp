@@ -87,8 +87,8 @@ struct WanderAzimuth {
   }
 
   explicit WanderAzimuth(const WanderState<T>& start)
-      : q_nb{quad<T>(start.q_nb.normalized()), {}},
-        q_en{quad<T>(start.q_en.normalized()), {}},
+      : q_nb{normalized(quad<T>(start.q_nb)), {}},
+        q_en{normalized(quad<T>(start.q_en)), {}},
         velocity{triple<T>(start.velocity), {}},
         height{start.height, T(0)} {}
   /// Without what the sums leave out.
