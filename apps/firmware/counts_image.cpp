@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the trunnion authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Instructions of each kernel, the call and the loop taken away: the mean of 512 calls (32 without floating point) of a function that is not
-// inlined, less that of an empty one with the same arguments.
+// Instructions of each kernel, the call and the loop taken away: the mean of 512 calls (32 without floating point) of a
+// function that is not inlined, less that of an empty one with the same arguments.
 
 #include "board/semihosting.hpp"
 #include "golden.hpp"
@@ -106,6 +106,9 @@ KERNEL demodulate_angle(const Inputs& in, void* state) {
 }
 using Bins = AngleBins<firmware::kBits, firmware::kMostSamples>;
 KERNEL bins(const Inputs& in, void* state) { (void)static_cast<Bins*>(state)->add(in.counts, in.angle); }
+KERNEL bins_pulse(const Inputs& in, void* state) {
+  (void)static_cast<Bins*>(state)->add_with_pulse(in.counts, in.angle, {0, 0, 1, 0});
+}
 KERNEL sine(const Inputs& in, void* out) { *static_cast<SinCos*>(out) = sin_cos(in.angle); }
 KERNEL watch(const Inputs& in, void* state) { (void)static_cast<ChannelWatch*>(state)->look(in.counts); }
 
@@ -124,9 +127,9 @@ KERNEL chain(const Inputs& in, void* state) {
 
 using Kernel = void (*)(const Inputs&, void*);
 
-std::uint32_t total(Kernel kernel, void* state) {
+std::uint32_t total(Kernel kernel, void* state, int calls = kCalls) {
   const std::uint32_t from = board::ticks();
-  for (int i = 0; i < kCalls; ++i) kernel(ring[i & (kRing - 1)], state);
+  for (int i = 0; i < calls; ++i) kernel(ring[i & (kRing - 1)], state);
   return board::instructions_since(from);
 }
 
@@ -175,6 +178,8 @@ int board::run() {
   const std::uint32_t without = total(strapdown, &fast);
   board::print("strapdown_earth ");  // a slow step with every update, less those updates without
   board::print((total(strapdown, &earth) - without) / kCalls);
+  board::print("\nturn_bins_pulse ");
+  board::print(total(bins_pulse, &angle_bins, 16) / 16);
   board::print("\nchain_sample ");
   board::print(total(chain, &whole) / kCalls);
   board::print("\n");

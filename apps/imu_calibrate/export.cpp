@@ -249,8 +249,7 @@ void export_calibration(const Options& o) {
   const Content content = content_of(io::read_calibration_file(o.calibration), o);
   if (!o.output.empty()) {
     io::write_whole(o.output, header_of(content, o, digest));
-    std::printf("%s: header, %s\n", o.output.c_str(),
-                content.block.has_counts == 1 ? "float and counts" : "float");
+    std::printf("%s: header, %s\n", o.output.c_str(), content.block.has_counts == 1 ? "float and counts" : "float");
   }
   if (!o.block.empty()) {
     io::write_whole(o.block, {reinterpret_cast<const char*>(&content.block), sizeof(content.block)});
