@@ -118,8 +118,8 @@ struct TurnRecord {
   std::int16_t turns = 0;    ///< between the two pulses, positive
   bool saturated = false;    ///< mark_saturated() was called in it
   bool reversed = false;     ///< the axial gyro turned against the phase: one of the two has the wrong sign
-  std::int16_t passed_over =
-      0;  ///< pulses within it that were none (AxialPhase): one every turn, and turns are miscounted
+  /// Pulses within it that were none (AxialPhase): one every turn, and turns are miscounted.
+  std::int16_t passed_over = 0;
 
   /// More pulses than samples without: the index is read with the wrong polarity.
   [[nodiscard]] bool index_inverted() const { return passed_over > samples / 131072; }
