@@ -47,11 +47,12 @@ class FrontEnd {
     out.phasor = trunnion::sin_cos(out.step.middle);
     out.turn = false;
     Status status = Status::kOk;
-    if (out.step.pulse.before < 0)
+    if (out.step.pulse.before < 0) {
       status = modulation_.add(out.counts, out.phasor);
-    else
+    } else {
       out.turn = modulation_.add_with_pulse(out.counts, out.phasor, out.step.pulse);
-    if (out.turn && seen == Status::kSaturated) modulation_.mark_saturated();  // the next turn has its share of it
+      if (seen == Status::kSaturated) modulation_.mark_saturated();  // the turn that begins has its share of it
+    }
     return seen != Status::kOk ? seen : status;
   }
   [[nodiscard]] const Modulation& modulation() const { return modulation_; }

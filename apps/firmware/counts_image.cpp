@@ -109,6 +109,9 @@ KERNEL bins(const Inputs& in, void* state) { (void)static_cast<Bins*>(state)->ad
 KERNEL bins_pulse(const Inputs& in, void* state) {
   (void)static_cast<Bins*>(state)->add_with_pulse(in.counts, in.angle, {0, 0, 1, 0});
 }
+KERNEL axial_phase(const Inputs& in, void* state) {
+  sink = static_cast<std::int32_t>(static_cast<AxialPhase*>(state)->middle(in.counts[2]));
+}
 KERNEL sine(const Inputs& in, void* out) { *static_cast<SinCos*>(out) = sin_cos(in.angle); }
 KERNEL watch(const Inputs& in, void* state) { (void)static_cast<ChannelWatch*>(state)->look(in.counts); }
 
@@ -148,6 +151,7 @@ Unit unit;
 Sum turn(2, 1000000, 0);
 Demodulator demodulator;
 Bins angle_bins;
+AxialPhase axial(firmware::kFullTurn);
 ChannelWatch channel_watch(32760, 32760, 1500);
 Attitude<float> gimbal(Quaternion<float>(1.0F, 0.0F, 0.0F, 0.0F));
 constexpr float kShort = 1e-5F;  // so that no slow step falls into the calls
@@ -171,6 +175,7 @@ int board::run() {
   show("turn_sum_demodulate", demodulate, &demodulator);
   show("turn_sum_demodulate_by_angle", demodulate_angle, &demodulator);
   show("turn_bins", bins, &angle_bins);
+  show("axial_phase", axial_phase, &axial);
   show("sin_cos", sine, room);
   show("channel_watch", watch, &channel_watch);
   show("attitude_two_samples", attitude, &gimbal);

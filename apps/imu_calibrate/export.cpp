@@ -64,7 +64,6 @@ void add(std::string& out, const kernel::Matrix<float>& A) {
   add(out, A.z);
   out += "}";
 }
-using Coefficients = UnitCorrection<float>::Coefficients;
 void add(std::string& out, const UnitCorrection<float>::Axes& axes) {
   out += "{";
   add(out, axes.A);

@@ -242,6 +242,28 @@ TEST(RevolutionAverage, SaysWhenTheAxialGyroSaturated) {
   EXPECT_EQ(average.add_with_pulse(pinned, 9), Pulse::kBounce);
 }
 
+// Of a caller that watches the range itself, and of an index that is high for nearly the whole turn.
+TEST(RevolutionAverage, TakesTheCallersWordAndTellsAnInvertedIndex) {
+  RevolutionAverage<std::int32_t, 1000, false> average(2, 1000, 50);
+  const UnitOutput<std::int32_t> beyond{0, 0, 100, 0, 0, 0};
+  EXPECT_EQ(average.add_with_pulse(beyond, 0), Pulse::kFirst);
+  for (int i = 0; i < 9; ++i) EXPECT_EQ(average.add(beyond), Status::kOk);
+  EXPECT_EQ(average.add_with_pulse(beyond, 0), Pulse::kTurn);
+  EXPECT_FALSE(average.turn().saturated);
+  EXPECT_FALSE(average.turn().is_index_inverted());
+  average.mark_saturated();
+  for (int i = 0; i < 9; ++i) EXPECT_EQ(average.add(beyond), Status::kOk);
+  EXPECT_EQ(average.add_with_pulse(beyond, 0), Pulse::kTurn);
+  EXPECT_TRUE(average.turn().saturated);
+  int turns = 0;
+  for (int i = 0; i < 30; ++i) {
+    if (average.add_with_pulse(beyond, 0) != Pulse::kTurn) continue;
+    ++turns;
+    EXPECT_TRUE(average.turn().is_index_inverted());
+  }
+  EXPECT_GT(turns, 1);
+}
+
 // No pulse for ever at full scale: sums stay where they are exact, and a mean before any turn is none.
 TEST(RevolutionAverage, IsExactHoweverLongNoPulseComes) {
   RevolutionAverage<std::int32_t> average(2, 1000000, 0);

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <vector>
 
+#include "strapdown/small_aircraft.hpp"
 #include "trunnion/core/units.hpp"
 #include "trunnion/simulation/analytic_path.hpp"
 #include "trunnion/simulation/gaussian.hpp"
@@ -20,27 +21,7 @@ using simulation::Gaussian;
 using simulation::PathTruth;
 using simulation::Pose;
 using Wide = long double;
-using Jet = simulation::TimeJet<Wide>;
-
-Jet of(double v) { return Jet(static_cast<Wide>(v)); }
-Jet wave(double amplitude, double period, double phase, const Jet& t) {
-  return of(amplitude) * sin(of(2.0 * kPi / period) * t + of(phase));
-}
-
-/// Banks, climbs, turns and vibrates as a small aircraft does.
-struct Hour {
-  Pose<Jet> operator()(const Jet& t) const {
-    return {of(47.0 * kRadPerDeg) + wave(4e-4, 260.0, 0.0, t),
-            of(8.0 * kRadPerDeg) + wave(6e-4, 310.0, 0.4, t),
-            of(800.0) + wave(150.0, 200.0, 0.0, t),
-            wave(25.0 * kRadPerDeg, 31.0, 0.0, t) + wave(0.2 * kRadPerDeg, 0.1, 0.0, t),
-            wave(8.0 * kRadPerDeg, 17.0, 0.0, t) + wave(0.2 * kRadPerDeg, 0.1, 0.5 * kPi, t),
-            wave(150.0 * kRadPerDeg, 300.0, 0.0, t)};
-  }
-};
-struct Bench {
-  Pose<Jet> operator()(const Jet&) const { return {of(0.8), of(-2.0), of(300.0), of(0.1), of(0.2), of(0.3)}; }
-};
+using Jet = PathJet;
 
 constexpr double kRate = 200.0;
 constexpr int kSamples = 3600 * 200;
@@ -147,8 +128,8 @@ void hold_the_hour(const char* name, const Path& path) {
   EXPECT_LT(own.up, 0.01 * caused.up);
 }
 
-TEST(GoldenHour, OfFlight) { hold_the_hour("flight", Hour{}); }
-TEST(GoldenHour, OfRest) { hold_the_hour("at rest", Bench{}); }
+TEST(GoldenHour, OfFlight) { hold_the_hour("flight", SmallAircraft{0.1}); }
+TEST(GoldenHour, OfRest) { hold_the_hour("at rest", OnABench{}); }
 
 }  // namespace
 }  // namespace trunnion

@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "strapdown/small_aircraft.hpp"
 #include "trunnion/core/units.hpp"
 #include "trunnion/simulation/analytic_path.hpp"
 #include "trunnion/simulation/gaussian.hpp"
@@ -23,12 +24,7 @@ using simulation::PathTruth;
 using simulation::Pose;
 using simulation::TimeJet;
 using Wide = long double;
-using Jet = TimeJet<Wide>;
-
-Jet of(double v) { return Jet(static_cast<Wide>(v)); }
-Jet wave(double amplitude, double period, double phase, const Jet& t) {
-  return of(amplitude) * sin(of(2.0 * kPi / period) * t + of(phase));
-}
+using Jet = PathJet;
 
 template <class T>
 Increment<T> cast(const Increment<Wide>& increment) {
@@ -52,22 +48,6 @@ Difference difference(const NavigationState<A>& a, const NavigationState<B>& b) 
           std::abs(static_cast<double>(static_cast<Wide>(a.height) - static_cast<Wide>(b.height))),
           static_cast<double>(a.attitude.template cast<Wide>().angularDistance(b.attitude.template cast<Wide>()))};
 }
-
-/// Banks, climbs, turns and vibrates as a small aircraft does; the vibration is a cone of 0.2 deg at 20 Hz.
-struct Flight {
-  Pose<Jet> operator()(const Jet& t) const {
-    return {of(47.0 * kRadPerDeg) + wave(4e-4, 260.0, 0.0, t),
-            of(8.0 * kRadPerDeg) + wave(6e-4, 310.0, 0.4, t),
-            of(800.0) + wave(150.0, 200.0, 0.0, t),
-            wave(25.0 * kRadPerDeg, 31.0, 0.0, t) + wave(0.2 * kRadPerDeg, 0.05, 0.0, t),
-            wave(8.0 * kRadPerDeg, 17.0, 0.0, t) + wave(0.2 * kRadPerDeg, 0.05, 0.5 * kPi, t),
-            wave(150.0 * kRadPerDeg, 300.0, 0.0, t)};
-  }
-};
-
-struct AtRest {
-  Pose<Jet> operator()(const Jet&) const { return {of(0.8), of(-2.0), of(300.0), of(0.1), of(0.2), of(0.3)}; }
-};
 
 /// 250 m/s east at 45 deg, over the date line after ten minutes.
 struct AlongAParallel {
@@ -99,7 +79,7 @@ Difference navigate(const Path& path, double rate_hz, double seconds, int update
 // Perfect samples along paths whose truth shares no equation with it. What is left at rest and along a parallel is of
 // third order in the slow step; on the flight it is the two-sample algorithm's coning, as with Navigator.
 TEST(TwoSpeedNavigator, FollowsPathsWhoseTruthIsKnown) {
-  const Difference rest = navigate<double>(AtRest{}, 200.0, 600.0, 10);
+  const Difference rest = navigate<double>(OnABench{}, 200.0, 600.0, 10);
   EXPECT_LT(rest.horizontal, 1e-4);
   EXPECT_LT(rest.up, 1e-3);
   const Difference parallel = navigate<double>(AlongAParallel{}, 200.0, 900.0, 10);
@@ -110,7 +90,7 @@ TEST(TwoSpeedNavigator, FollowsPathsWhoseTruthIsKnown) {
   EXPECT_LT(parallel.attitude, 1e-9);
 }
 TEST(TwoSpeedNavigator, FliesAsNavigatorDoes) {
-  const PathTruth<Flight> truth(Flight{});
+  const PathTruth<SmallAircraft> truth(SmallAircraft{});
   constexpr int kSamples = 300 * 200;
   TwoSpeedNavigator<double> fast(truth.state(0.0L), 0.005, 10);
   Navigator<MultiSample<double, 2>> fine(truth.state(0.0L), 0.005);
@@ -142,7 +122,7 @@ TEST(TwoSpeedNavigator, FliesOverThePole) {
 
 // Between two slow steps the state is what it would be if one ended there.
 TEST(TwoSpeedNavigator, HasAStateAtEveryUpdate) {
-  const PathTruth<Flight> truth(Flight{});
+  const PathTruth<SmallAircraft> truth(SmallAircraft{});
   TwoSpeedNavigator<double> slow(truth.state(0.0L), 0.005, 20);
   TwoSpeedNavigator<double> every(truth.state(0.0L), 0.005, 1);
   for (int i = 0; i < 2 * 97; ++i) {
@@ -161,7 +141,7 @@ TEST(TwoSpeedNavigator, HasAStateAtEveryUpdate) {
 }
 
 TEST(TwoSpeedNavigator, GoesOnFromAWanderState) {
-  const PathTruth<Flight> truth(Flight{});
+  const PathTruth<SmallAircraft> truth(SmallAircraft{});
   TwoSpeedNavigator<double> first(truth.state(0.0L), 0.005, 10);
   const auto increment = [&](int i) { return cast<double>(truth.increment(0.005L * i, 0.005L * (i + 1))); };
   for (int i = 0; i < 2000; ++i) ASSERT_EQ(first.add(increment(i)), Status::kOk);
@@ -176,7 +156,7 @@ TEST(TwoSpeedNavigator, GoesOnFromAWanderState) {
 }
 
 TEST(TwoSpeedNavigator, RefusesWhatIsNotFiniteAndGoesOn) {
-  const PathTruth<AtRest> truth(AtRest{});
+  const PathTruth<OnABench> truth(OnABench{});
   const Increment<float> good = cast<float>(truth.increment(0.0L, 0.005L));
   TwoSpeedNavigator<float> plain(truth.state(0.0L), 0.005F, 10);
   TwoSpeedNavigator<float> troubled(truth.state(0.0L), 0.005F, 10);
@@ -219,7 +199,7 @@ TEST(TwoSpeedNavigator, SaysThatItsStateIsNone) {
   EXPECT_GT(fast_said, 200);
 }
 TEST(TwoSpeedNavigator, TakesNoSlowStepBeyondASecond) {
-  const PathTruth<Flight> truth(Flight{});
+  const PathTruth<SmallAircraft> truth(SmallAircraft{});
   TwoSpeedNavigator<double> slow(truth.state(0.0L), 0.01, 100000);
   TwoSpeedNavigator<double> plain(truth.state(0.0L), 0.01, 50);
   for (int i = 0; i < 3000; ++i) {

@@ -75,11 +75,13 @@ bool loop(trunnion::TurnSplit<std::int32_t>& split) {
     const trunnion::IndexPulse pulse = raw.before < 0 ? trunnion::IndexPulse{} : phase.pulse(raw.before, counts[2]);
     if (pulse.before < 0) {
       if (bins.add(counts, middle) == trunnion::Status::kTimeOut) phase.restart();  // no index: the cable?
-    } else if (bins.add_with_pulse(counts, middle, pulse)) {
+      continue;
+    }
+    if (bins.add_with_pulse(counts, middle, pulse)) {
       split = bins.turn().split();
       complete = split.valid && !bins.turn().record().saturated && bins.turn().record().passed_over == 0;
-      if (saturated) bins.turn().mark_saturated();
     }
+    if (saturated) bins.turn().mark_saturated();  // the turn that begins has its share of it
   }
   return complete;
 }

@@ -183,4 +183,5 @@ TRUNNION_COLD void add_seldom(CompensatedSum<V>& to, const V& step) {
     sum[i] = next;
   }
 }
+
 }  // namespace trunnion::kernel

@@ -65,7 +65,7 @@ struct CountCalibration {
 
 namespace kernel {
 
-/// Eq. (1) before the last shift. Raw pointers: nothing is copied.
+/// Eq. (1) before the last shift.
 TRUNNION_INLINE std::int64_t row_sum(std::int64_t c, const CountCoefficients::Row& A, std::int32_t x, std::int32_t y,
                                      std::int32_t z) {
   return c + static_cast<std::int64_t>(A[0]) * x + static_cast<std::int64_t>(A[1]) * y +
@@ -196,9 +196,8 @@ class BasicCountCorrection {
 using CountCorrection = BasicCountCorrection<true>;
 using LinearCountCorrection = BasicCountCorrection<false>;
 
-/// The factory, for a host: integer coefficients of @p unit, whose readings are raw counts of @p bits with the meaning
-/// of
-/// @p scale, and the bound on what they cost. Counts out are 2^-fraction of counts in.
+/// The factory, for a host: integer coefficients of @p unit, whose readings are raw counts of @p bits that mean what
+/// @p scale says, and the bound on what they cost. Counts out are 2^-fraction of counts in.
 ///
 /// @param bits B in 2..30; @param fraction in 0..28, bits + fraction <= 30
 /// @return kOutOfRange for an argument outside that or not finite, a matrix without an inverse or with a row whose

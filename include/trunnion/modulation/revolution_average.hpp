@@ -112,7 +112,8 @@ class RevolutionAverage {
   static constexpr Sum kOne = RevolutionSum<C>::kOne;
 
   /// @param axial output along the axis, 0, 1 or 2 (gyro x, y, z)
-  /// @param full_turn what the axial output of one turn sums to: 2 pi / (scale * sample period), in outputs; positive
+  /// @param full_turn what the axial output of one turn sums to: 2 pi rad by outputs a rad/s by samples a second;
+  /// positive
   /// @param axial_range output at which the axial gyro saturates; 0: unknown
   RevolutionAverage(std::size_t axial, Sum full_turn, C axial_range)
       : axial_(axial),
@@ -124,7 +125,7 @@ class RevolutionAverage {
   /// @return kTimeOut when for MostSamples no pulse has come: the turn is broken off, a new one begins with the next
   TRUNNION_INLINE Status add(const UnitOutput<C>& sample) {
     kernel::add<true>(whole_, sample);
-    if constexpr (WatchesRange) look_at_range(sample);
+    look_at_range(sample);
     if (++count_ < MostSamples) return Status::kOk;
     return time_out();
   }
@@ -211,6 +212,7 @@ class RevolutionAverage {
     saturated_ = false;
   }
   [[nodiscard]] TRUNNION_INLINE bool is_saturated(const UnitOutput<C>& sample) const {
+    if constexpr (!WatchesRange) return false;
     const C z = sample[axial_];
     return axial_range_ > C(0) && (z >= near_range_ || z <= -near_range_);
   }
