@@ -45,17 +45,17 @@ class Corrected final : public SampleSink {
   long long samples_ = 0;
 };
 
-long long apply_to_log(const std::string& input, const std::string& channel, const std::string& output,
+long long apply_to_log(const std::string& input, const io::LcmChannels& channels, const std::string& output,
                        const UnitCorrection<double>& correction) {
   io::LcmLogReader log(input);
   io::LcmLogWriter out(output);
   std::vector<InertialSample<double>> corrected;
   Corrected sink(correction, [&](std::int64_t, const InertialSample<double>& sample) { corrected.push_back(sample); });
-  io::LcmDecoder decoder(input, sink);
+  io::LcmDecoder decoder(input, sink, channels);
   io::LcmEvent event;
   std::string message;
   while (log.next(event)) {
-    if (event.channel != channel) {
+    if (event.channel != channels.imu.name) {
       out.write(event.timestamp, event.channel, event.data);
       continue;
     }
@@ -63,12 +63,13 @@ long long apply_to_log(const std::string& input, const std::string& channel, con
     decoder.imu(event);
     if (corrected.empty()) continue;  // damaged, and counted
     message = event.data;             // stamps, sequence and temperature stay
-    io::replace_samples(corrected, message);
+    if (!io::replace_samples(corrected, message))
+      throw io::input_error(input, 0, "channel " + channels.imu.name, "is not of type imu_t or imu_batch_t: apply cannot write it again");
     out.write(event.timestamp, event.channel, message);
   }
   decoder.finish();
   if (sink.samples() == 0) {
-    throw io::input_error(input, 0, "", "no usable message on the IMU channel '" + channel + "'");
+    throw io::input_error(input, 0, "", "no usable message on the IMU channel '" + channels.imu.name + "'");
   }
   out.commit();
   const long long records = log.lost_records() + decoder.damaged().records;
@@ -116,7 +117,7 @@ void apply(const Options& o) {
     files.encoder.clear();
   } else {
     if (o.of_run > 0) throw Error(ExitCode::kUsage, "--of-run: " + o.input + " is no run file");
-    if (!o.channel.empty()) run.channels.imu = o.channel;
+    if (!o.channel.empty()) run.channels.imu.name = o.channel;
     (is_table(o.input) ? files.imu : files.lcm) = o.input;
   }
   const bool table = files.lcm.empty();
@@ -128,7 +129,7 @@ void apply(const Options& o) {
   keep_inputs(o.output, sources);
   const UnitCorrection<double> correction(unit);
   const long long samples = table ? apply_to_table(o, run, files, correction)
-                                  : apply_to_log(files.lcm, run.channels.imu, o.output, correction);
+                                  : apply_to_log(files.lcm, run.channels, o.output, correction);
   std::printf("%s: %lld samples corrected\n", o.output.c_str(), samples);
 }
 

@@ -274,8 +274,8 @@ void add_inspect(CLI::App& app, ExitCode& exit_code) {
   command->add_option("--format", o->format, "Of the result")
       ->capture_default_str()
       ->check(CLI::IsMember({"text", "json"}));
-  command->add_option("--imu-channel", o->channels.imu, "Of a log")->capture_default_str();
-  command->add_option("--encoder-channel", o->channels.encoder, "Of a log")->capture_default_str();
+  command->add_option("--imu-channel", o->channels.imu.name, "Of a log")->capture_default_str();
+  command->add_option("--encoder-channel", o->channels.encoder.name, "Of a log")->capture_default_str();
   command->footer("Example:\n  imu_calibrate inspect run.yaml");
   command->callback([o, &exit_code] { exit_code = inspect(*o); });
 }

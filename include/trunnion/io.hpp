@@ -12,6 +12,8 @@
 #include "trunnion/io/fault.hpp"
 #include "trunnion/io/lcm_log.hpp"
 #include "trunnion/io/lcm_recording.hpp"
+#include "trunnion/io/lcm_type.hpp"
+#include "trunnion/io/message_map.hpp"
 #include "trunnion/io/run_file.hpp"
 #include "trunnion/io/sensor_sheet.hpp"
 #include "trunnion/io/whole_file.hpp"

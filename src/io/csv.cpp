@@ -103,10 +103,7 @@ class Table {
         column.si = 1.0 / counts.scale;
         column.zero = counts.zero;
       } else {
-        const Units units = units_of(quantity);
-        for (std::size_t i = 0; i < units.count; ++i) {
-          if (unit == units.first[i].name) column.si = units.first[i].si;
-        }
+        column.si = unit_in_si(quantity, unit);
       }
       if (quantity != "t") column.largest = kLargestReading;
       columns_.push_back(column);
@@ -258,6 +255,14 @@ std::int64_t to_utime(double t, const Table& table) {
 }
 
 }  // namespace
+
+double unit_in_si(const std::string& quantity, const std::string& unit) {
+  const Units units = units_of(quantity);
+  for (std::size_t i = 0; i < units.count; ++i) {
+    if (unit == units.first[i].name) return units.first[i].si;
+  }
+  return 0.0;
+}
 
 bool unit_fits(const std::string& quantity, const std::string& unit, std::string& expected) {
   const Units units = units_of(quantity);

@@ -18,6 +18,8 @@ constexpr std::size_t kImuHead = 8 + 8 + 8;
 constexpr std::size_t kImuBytes = kImuHead + 6 * 8 + 8;
 constexpr std::size_t kEncoderHead = 8 + 8 + 8 + 4;
 constexpr std::size_t kBatchHead = 8 + 8 + 8 + 4;
+constexpr std::size_t kCountsBytes = 8 + 8 + 8 + 7 * 4;
+constexpr std::size_t kSequence = 16;  // where it is in every type
 constexpr std::size_t kBatchSample = 7 * 8;
 constexpr long long kEventsPerProgress = 100000;
 constexpr std::size_t kNamedChannels = 20;  // in a message
@@ -33,18 +35,33 @@ std::string hexadecimal(std::uint64_t v) {
 
 }  // namespace
 
+LcmDecoder::LcmDecoder(std::string source, SampleSink& sink, const LcmChannels& channels)
+    : source_(std::move(source)), sink_(sink), counts_(channels.sheet.counts) {
+  if (channels.imu.map) imu_map_.emplace(channels.imu.map, channels.sheet);
+  if (channels.encoder.map) encoder_map_.emplace(channels.encoder.map, channels.sheet);
+}
+
 void LcmDecoder::imu(const LcmEvent& event) {
+  if (imu_map_) return mapped_imu(event);
   const char* p = event.data.data();
   const std::uint64_t fingerprint = event.data.size() >= 8 ? load_u64(p) : 0;
+  InertialSample<double> sample;
   if (fingerprint == kImuFingerprint && event.data.size() == kImuBytes) {
-    InertialSample<double> sample;
     for (int i = 0; i < 3; ++i) {
       sample.w(i) = load_double(p + 24 + 8 * i);
       sample.f(i) = load_double(p + 48 + 8 * i);
     }
+    imu_sequence_.add(load_i64(p + kSequence));
     deliver(event, load_i64(p + 8), sample);
   } else if (fingerprint == kImuBatchFingerprint && event.data.size() >= kBatchHead) {
     batch(event);
+  } else if (fingerprint == kImuCountsFingerprint && event.data.size() == kCountsBytes) {
+    for (int i = 0; i < 3; ++i) {
+      sample.w(i) = (static_cast<std::int32_t>(load_u32(p + 24 + 4 * i)) - counts_.gyro.zero) / counts_.gyro.scale;
+      sample.f(i) = (static_cast<std::int32_t>(load_u32(p + 36 + 4 * i)) - counts_.accel.zero) / counts_.accel.scale;
+    }
+    imu_sequence_.add(load_i64(p + kSequence));
+    deliver(event, load_i64(p + 8), sample);
   } else {
     damage(event, foreign(event, fingerprint,
                           "trunnion_lcm.imu_t (" + hexadecimal(kImuFingerprint) + ") or trunnion_lcm.imu_batch_t (" +
@@ -52,7 +69,26 @@ void LcmDecoder::imu(const LcmEvent& event) {
   }
 }
 
+void LcmDecoder::mapped_imu(const LcmEvent& event) {
+  const std::string wrong = imu_map_->imu(event, mapped_);
+  if (!wrong.empty()) return damage(event, fault(event, "channel " + printable(std::string(event.channel)), wrong));
+  for (const MappedMessages::Sample& sample : mapped_) {
+    // batches may overlap: what came before is not counted again
+    if (imu_map_->has_sequence() && !imu_sequence_.add(sample.sequence)) continue;
+    deliver(event, sample.utime, sample.value);
+  }
+}
+
 void LcmDecoder::encoder(const LcmEvent& event) {
+  if (encoder_map_) {
+    std::int64_t utime = 0;
+    std::int64_t sequence = 0;
+    std::array<double, 2> angle{};
+    const std::string wrong = encoder_map_->encoder(event, utime, sequence, angle);
+    if (!wrong.empty()) return damage(event, fault(event, "channel " + printable(std::string(event.channel)), wrong));
+    if (encoder_map_->has_sequence()) encoder_sequence_.add(sequence);
+    return deliver_angles(event, utime, angle);
+  }
   const char* p = event.data.data();
   const std::uint64_t fingerprint = event.data.size() >= 8 ? load_u64(p) : 0;
   if (fingerprint != kEncoderFingerprint || event.data.size() < kEncoderHead) {
@@ -60,20 +96,19 @@ void LcmDecoder::encoder(const LcmEvent& event) {
                   foreign(event, fingerprint, "trunnion_lcm.encoder_t (" + hexadecimal(kEncoderFingerprint) + ")"));
   }
   const auto axes = static_cast<std::int32_t>(load_u32(p + 24));
-  if (axes != 2 || event.data.size() != kEncoderHead + 16) {
-    return damage(event, input_error_at_byte(path_, event.byte, "num_axes",
-                                             "is " + std::to_string(axes) + ", a two-axis table has 2"));
-  }
-  const double azimuth = load_double(p + kEncoderHead);
-  const double pitch = load_double(p + kEncoderHead + 8);
-  if (!std::isfinite(azimuth) || !std::isfinite(pitch)) {
-    throw input_error_at_byte(path_, event.byte, std::isfinite(azimuth) ? "angle[1]" : "angle[0]", "is not finite");
-  }
-  if (std::abs(azimuth) > kLargestAngle || std::abs(pitch) > kLargestAngle) {
-    return damage(event, input_error_at_byte(path_, event.byte, "angle", "is beyond a million turns"));
+  if (axes != 2 || event.data.size() != kEncoderHead + 16)
+    return damage(event, fault(event, "num_axes", "is " + std::to_string(axes) + ", a two-axis table has 2"));
+  encoder_sequence_.add(load_i64(p + kSequence));
+  deliver_angles(event, load_i64(p + 8), {load_double(p + kEncoderHead), load_double(p + kEncoderHead + 8)});
+}
+
+void LcmDecoder::deliver_angles(const LcmEvent& event, std::int64_t utime, const std::array<double, 2>& angle) {
+  for (std::size_t i = 0; i < angle.size(); ++i) {
+    if (!std::isfinite(angle[i])) throw fault(event, "angle[" + std::to_string(i) + "]", "is not finite");
+    if (std::abs(angle[i]) > kLargestAngle) return damage(event, fault(event, "angle", "is beyond a million turns"));
   }
   ++encoders_;
-  sink_.encoder(load_i64(p + 8), azimuth, pitch);
+  sink_.encoder(utime, angle[0], angle[1]);
 }
 
 void LcmDecoder::deliver(const LcmEvent& event, std::int64_t utime, const InertialSample<double>& sample) {
@@ -81,10 +116,10 @@ void LcmDecoder::deliver(const LcmEvent& event, std::int64_t utime, const Inerti
     for (const auto& [value, field] :
          {std::pair{sample.w(i), "angular_rate["}, std::pair{sample.f(i), "specific_force["}}) {
       if (std::abs(value) < kLargestReading) continue;
-      const Error fault = input_error_at_byte(path_, event.byte, field + std::to_string(i) + "]",
-                                              std::isfinite(value) ? "is beyond any sensor" : "is not finite");
-      if (!std::isfinite(value)) throw fault;
-      return damage(event, fault);
+      const Error wrong = fault(event, field + std::to_string(i) + "]",
+                                std::isfinite(value) ? "is beyond any sensor" : "is not finite");
+      if (!std::isfinite(value)) throw wrong;
+      return damage(event, wrong);
     }
   }
   ++samples_;
@@ -95,9 +130,9 @@ void LcmDecoder::batch(const LcmEvent& event) {
   const char* p = event.data.data();
   const std::uint64_t n = load_u32(p + 24);
   if (event.data.size() != kBatchHead + kBatchSample * n + 8) {
-    return damage(event,
-                  input_error_at_byte(path_, event.byte, "num_samples", "does not fit the length of the message"));
+    return damage(event, fault(event, "num_samples", "does not fit the length of the message"));
   }
+  if (n > 0) imu_sequence_.add(load_i64(p + kSequence), static_cast<std::int64_t>(n));
   const char* utime = p + kBatchHead;
   for (std::uint64_t k = 0; k < n; ++k) {
     InertialSample<double> sample;
@@ -120,23 +155,35 @@ void LcmDecoder::finish() const {
   if (first_fault_ && static_cast<double>(damaged_.records) > kTolerableDamage * whole) throw *first_fault_;
 }
 
+/// At a byte of a file, or of a bus the number of the message.
+Error LcmDecoder::fault(const LcmEvent& event, const std::string& field, const std::string& what) const {
+  if (event.byte >= 0) return input_error_at_byte(source_, event.byte, field, what);
+  return input_error(source_, 0, "message " + std::to_string(event.number) + ": " + field, what);
+}
+
 Error LcmDecoder::foreign(const LcmEvent& event, std::uint64_t fingerprint, const std::string& expected) const {
-  return input_error_at_byte(path_, event.byte, "channel " + std::string(event.channel),
-                             "holds a message of another type, fingerprint " + hexadecimal(fingerprint) + ", " +
-                                 std::to_string(event.data.size()) + " bytes; expected " + expected);
+  std::string known;
+  for (const MessagePreset& preset : message_presets()) {
+    if (preset.map.types->fingerprint(preset.map.type) != fingerprint) continue;
+    known = "; that is " + preset.name + ": state 'preset: " + preset.name + "' for the channel";
+    break;
+  }
+  return fault(event, "channel " + printable(std::string(event.channel)),
+               "holds a message of another type, fingerprint " + hexadecimal(fingerprint) + ", " +
+                   std::to_string(event.data.size()) + " bytes" + known + "; expected " + expected);
 }
 
 LcmLosses read_lcm_recording(const std::string& path, const LcmChannels& channels, bool need_encoder, SampleSink& sink,
                              Sha256* digest, const Progress& progress) {
   LcmLogReader log(path, digest);
-  LcmDecoder decoder(path, sink);
+  LcmDecoder decoder(path, sink, channels);
   LcmEvent event;
   long long events = 0;
   std::set<std::string, std::less<>> others;
   while (log.next(event)) {
-    if (event.channel == channels.imu) {
+    if (event.channel == channels.imu.name) {
       decoder.imu(event);
-    } else if (event.channel == channels.encoder) {
+    } else if (event.channel == channels.encoder.name) {
       decoder.encoder(event);
     } else if (others.size() < kNamedChannels && others.find(event.channel) == others.end()) {
       others.emplace(event.channel);
@@ -150,25 +197,31 @@ LcmLosses read_lcm_recording(const std::string& path, const LcmChannels& channel
     others_named += (others_named.empty() ? "; other channels: " : ", ") + printable(name);
   if (decoder.samples() == 0) {
     throw input_error(path, 0, "",
-                      "no usable message on the IMU channel '" + channels.imu + "'" + others_named +
+                      "no usable message on the IMU channel '" + channels.imu.name + "'" + others_named +
                           (log.lost_bytes() > 0 ? "; " + std::to_string(log.lost_bytes()) + " bytes are damaged" : ""));
   }
   if (need_encoder && decoder.encoders() == 0) {
     throw input_error(path, 0, "",
-                      "no usable message on the encoder channel '" + channels.encoder + "'" + others_named);
+                      "no usable message on the encoder channel '" + channels.encoder.name + "'" + others_named);
   }
-  return {log.lost_records() + decoder.damaged().records, log.lost_bytes() + decoder.damaged().bytes};
+  return {log.lost_records() + decoder.damaged().records, log.lost_bytes() + decoder.damaged().bytes,
+          decoder.imu_sequence().numbered() ? decoder.imu_sequence().lost() : 0};
 }
 
-void replace_samples(const std::vector<InertialSample<double>>& samples, std::string& message) {
+bool replace_samples(const std::vector<InertialSample<double>>& samples, std::string& message) {
   const std::size_t n = samples.size();
-  const bool batch = load_u64(message.data()) == kImuBatchFingerprint;
+  const std::uint64_t fingerprint = message.size() >= kImuHead ? load_u64(message.data()) : 0;
+  const bool batch = fingerprint == kImuBatchFingerprint;
+  if (message.size() != (batch ? kBatchHead + kBatchSample * n + 8 : kImuBytes) ||
+      (!batch && fingerprint != kImuFingerprint))
+    return false;
   for (std::size_t k = 0; k < n; ++k) {
     for (std::size_t i = 0; i < 6; ++i) {
       const double value = i < 3 ? samples[k].w(static_cast<int>(i)) : samples[k].f(static_cast<int>(i) - 3);
       store_double(value, message.data() + (batch ? kBatchHead + 8 * ((1 + i) * n + k) : kImuHead + 8 * i));
     }
   }
+  return true;
 }
 
 void encode_imu(std::int64_t utime, std::int64_t sequence, const InertialSample<double>& sample, std::string& out) {
@@ -179,6 +232,30 @@ void encode_imu(std::int64_t utime, std::int64_t sequence, const InertialSample<
   for (int i = 0; i < 3; ++i) append_double(out, sample.w(i));
   for (int i = 0; i < 3; ++i) append_double(out, sample.f(i));
   append_double(out, std::nan(""));
+}
+
+void encode_imu_batch(std::int64_t sequence, const std::vector<std::int64_t>& utime,
+                      const std::vector<InertialSample<double>>& samples, std::string& out) {
+  out.clear();
+  append_unsigned(out, kImuBatchFingerprint);
+  append_i64(out, utime.empty() ? 0 : utime.back());
+  append_i64(out, sequence);
+  append_unsigned(out, static_cast<std::uint32_t>(samples.size()));
+  for (const std::int64_t t : utime) append_i64(out, t);
+  for (int i = 0; i < 6; ++i) {
+    for (const auto& sample : samples) append_double(out, i < 3 ? sample.w(i) : sample.f(i - 3));
+  }
+  append_double(out, std::nan(""));
+}
+
+void encode_imu_counts(std::int64_t utime, std::int64_t sequence, const UnitOutput<std::int32_t>& counts,
+                       std::int32_t temperature, std::string& out) {
+  out.clear();
+  append_unsigned(out, kImuCountsFingerprint);
+  append_i64(out, utime);
+  append_i64(out, sequence);
+  for (const std::int32_t count : counts) append_unsigned(out, static_cast<std::uint32_t>(count));
+  append_unsigned(out, static_cast<std::uint32_t>(temperature));
 }
 
 void encode_encoder(std::int64_t utime, std::int64_t sequence, double azimuth, double pitch, std::string& out) {

@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <memory>
 
+#include "channel_yaml.hpp"
 #include "strict_yaml.hpp"
 #include "trunnion/core/earth.hpp"
 #include "trunnion/core/units.hpp"
@@ -82,7 +84,7 @@ RecordingFiles read_files(const StrictYaml& node, const std::string& run, bool h
 RunFile read_run_file(const std::string& path) {
   const StrictYaml root = StrictYaml::load(path, "trunnion-run/1");
   root.only({"format", "site", "rig", "axes", "sheet", "serial", "clock", "bias", "model", "refuse_above", "recordings",
-             "limits", "channels", "columns"});
+             "limits", "channels", "lcm_types", "columns"});
   RunFile run;
   run.path = path;
 
@@ -148,10 +150,17 @@ RunFile read_run_file(const std::string& path) {
       if (limits.at(key).has("sigma")) run.limits[i].sigma = limits.at(key).at("sigma").positive();
     }
   }
+  const auto types = std::make_shared<LcmTypes>();
+  if (root.has("lcm_types")) {
+    const StrictYaml folders = root.at("lcm_types");
+    for (std::size_t i = 0; i < folders.length(); ++i) types->add(beside(path, folders.at(i).text()));
+  }
+  run.channels.sheet = run.sheet;
   if (root.has("channels")) {
-    root.at("channels").only({"imu", "encoder"});
-    if (root.at("channels").has("imu")) run.channels.imu = root.at("channels").at("imu").text();
-    if (root.at("channels").has("encoder")) run.channels.encoder = root.at("channels").at("encoder").text();
+    const StrictYaml channels = root.at("channels");
+    channels.only({"imu", "encoder"});
+    if (channels.has("imu")) run.channels.imu = read_channel(channels.at("imu"), true, types, run.sheet);
+    if (channels.has("encoder")) run.channels.encoder = read_channel(channels.at("encoder"), false, types, run.sheet);
   }
   if (root.has("columns")) run.columns = read_columns(root.at("columns"));
 

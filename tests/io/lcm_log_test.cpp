@@ -140,8 +140,10 @@ TEST(LcmRecording, RefusesWhatItCannotUse) {
   EXPECT_REFUSES(ExitCode::kInput, "is empty", read_lcm_recording(folder.file("empty.lcm", ""), {}, true, collect));
   EXPECT_REFUSES(ExitCode::kInput, "bytes are damaged",
                  read_lcm_recording(folder.file("noise.lcm", std::string(5000, '\xed')), {}, true, collect));
+  LcmChannels other;
+  other.encoder.name = "TABLE";
   EXPECT_REFUSES(ExitCode::kInput, "no usable message on the encoder channel 'TABLE'",
-                 read_lcm_recording(write_log(folder, 10), {"IMU", "TABLE"}, true, collect));
+                 read_lcm_recording(write_log(folder, 10), other, true, collect));
   const std::size_t encoder_record = 2 * kPair + 28 + 3 + 80;
   const auto foreign = [&](int messages) {
     return change(folder, write_log(folder, messages),

@@ -33,6 +33,9 @@ using ColumnMap = std::map<std::string, ColumnChoice>;
 /// Whether @p unit can measure @p quantity: for messages about a wrong unit, @p expected takes the list.
 bool unit_fits(const std::string& quantity, const std::string& unit, std::string& expected);
 
+/// One @p unit of @p quantity in SI; zero for a unit that does not measure it, and for counts.
+double unit_in_si(const std::string& quantity, const std::string& unit);
+
 /// Rows of t, three rates and three specific forces into @p sink.
 /// @throws Error (input) naming file, line and column
 void read_imu_csv(const std::string& path, const ColumnMap& columns, const SensorSheet& sheet, SampleSink& sink,

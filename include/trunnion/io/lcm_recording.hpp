@@ -5,6 +5,7 @@
 
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -14,7 +15,10 @@
 #include "trunnion/core/error.hpp"
 #include "trunnion/io/digest.hpp"
 #include "trunnion/io/lcm_log.hpp"
+#include "trunnion/io/message_map.hpp"
+#include "trunnion/io/sensor_sheet.hpp"
 #include "trunnion/positions/sample_sink.hpp"
+#include "trunnion/positions/sequence_watch.hpp"
 #include "trunnion/strapdown/navigator.hpp"
 
 namespace trunnion::io {
@@ -25,15 +29,19 @@ inline constexpr std::uint64_t kEncoderFingerprint = 0x0cb51f0098d46dacULL;
 inline constexpr std::uint64_t kImuBatchFingerprint = 0x42742e60ae44bd0cULL;
 inline constexpr std::uint64_t kIndexFingerprint = 0x724d29f1847a9b61ULL;
 inline constexpr std::uint64_t kNavigationFingerprint = 0x95dc36850fa1a09cULL;
+inline constexpr std::uint64_t kImuCountsFingerprint = 0x9ecd1788d10210a8ULL;
 
+/// Which channels are read, and what their messages are.
 struct LcmChannels {
-  std::string imu = "IMU";
-  std::string encoder = "ENCODER";
+  ChannelChoice imu{"IMU", nullptr};
+  ChannelChoice encoder{"ENCODER", nullptr};
+  SensorSheet sheet;  ///< what a count is, and the period of a sample, where messages do not say
 };
 
 struct LcmLosses {
-  long long records = 0;
+  long long records = 0;  ///< damaged in the file
   long long bytes = 0;
+  long long samples = 0;  ///< of the unit, that its sequence numbers miss
 };
 
 /// Decodes messages of one log into a sink. A message that cannot be decoded is counted as damage, unless there are too
@@ -41,12 +49,14 @@ struct LcmLosses {
 /// finite are refused at once.
 class LcmDecoder {
  public:
-  /// The references must outlive the decoder.
-  LcmDecoder(const std::string& path, SampleSink& sink) : path_(path), sink_(sink) {}
+  /// @param source of the messages, for messages to people: a file, or the address of a bus
+  /// @param sink must outlive the decoder
+  /// @throws Error (input) for a map that does not fit its type
+  LcmDecoder(std::string source, SampleSink& sink, const LcmChannels& channels = {});
 
-  /// imu_t or imu_batch_t.
+  /// imu_t, imu_batch_t or imu_counts_t; with a map, its type.
   void imu(const LcmEvent& event);
-  /// encoder_t with two axes.
+  /// encoder_t with two axes; with a map, its type.
   void encoder(const LcmEvent& event);
 
   /// Call after the last message. @throws Error (input) when more than one message in a thousand could not be decoded
@@ -56,15 +66,28 @@ class LcmDecoder {
   [[nodiscard]] long long encoders() const { return encoders_; }
   /// Messages, and their bytes, that could not be decoded.
   [[nodiscard]] const LcmLosses& damaged() const { return damaged_; }
+  /// What is wrong with the first of them; empty where none is.
+  [[nodiscard]] std::string first_fault() const { return first_fault_ ? first_fault_->what() : std::string(); }
+  [[nodiscard]] const SequenceWatch& imu_sequence() const { return imu_sequence_; }
+  [[nodiscard]] const SequenceWatch& encoder_sequence() const { return encoder_sequence_; }
 
  private:
   void damage(const LcmEvent& event, const Error& fault);
   void deliver(const LcmEvent& event, std::int64_t utime, const InertialSample<double>& sample);
   void batch(const LcmEvent& event);
+  void mapped_imu(const LcmEvent& event);
+  void deliver_angles(const LcmEvent& event, std::int64_t utime, const std::array<double, 2>& angle);
+  [[nodiscard]] Error fault(const LcmEvent& event, const std::string& field, const std::string& what) const;
   [[nodiscard]] Error foreign(const LcmEvent& event, std::uint64_t fingerprint, const std::string& expected) const;
 
-  const std::string& path_;
+  std::string source_;
   SampleSink& sink_;
+  UnitScale<double> counts_;
+  std::optional<MappedMessages> imu_map_;
+  std::optional<MappedMessages> encoder_map_;
+  std::vector<MappedMessages::Sample> mapped_;
+  SequenceWatch imu_sequence_;
+  SequenceWatch encoder_sequence_;
   long long samples_ = 0;
   long long encoders_ = 0;
   LcmLosses damaged_;
@@ -73,18 +96,24 @@ class LcmDecoder {
 
 using Progress = std::function<void(double fraction)>;
 
-/// Reads a log into @p sink: imu_t and imu_batch_t on the IMU channel, encoder_t on the encoder channel; other channels
-/// are passed over.
+/// Reads a log into @p sink: the IMU channel and the encoder channel; other channels are passed over.
 /// @param need_encoder whether a log without encoder readings is refused
 /// @throws Error (input) for a missing, empty or useless log, another type's fingerprint, or values that are not finite
 LcmLosses read_lcm_recording(const std::string& path, const LcmChannels& channels, bool need_encoder, SampleSink& sink,
                              Sha256* digest = nullptr, const Progress& progress = {});
 
 /// Puts other samples into a message of type imu_t or imu_batch_t that was decoded into as many; the rest stays.
-void replace_samples(const std::vector<InertialSample<double>>& samples, std::string& message);
+/// @return false for a message of another type, which stays as it is
+bool replace_samples(const std::vector<InertialSample<double>>& samples, std::string& message);
 
 /// Encodes one message of type imu_t, or encoder_t with two axes, into @p out (cleared first).
 void encode_imu(std::int64_t utime, std::int64_t sequence, const InertialSample<double>& sample, std::string& out);
+/// Encodes one message of type imu_batch_t: as many samples as stamps, the first of them number @p sequence.
+void encode_imu_batch(std::int64_t sequence, const std::vector<std::int64_t>& utime,
+                      const std::vector<InertialSample<double>>& samples, std::string& out);
+/// Encodes one message of type imu_counts_t: gyro x, y, z, accelerometer x, y, z, and 1/256 degC.
+void encode_imu_counts(std::int64_t utime, std::int64_t sequence, const UnitOutput<std::int32_t>& counts,
+                       std::int32_t temperature, std::string& out);
 void encode_encoder(std::int64_t utime, std::int64_t sequence, double azimuth, double pitch, std::string& out);
 /// Encodes one message of type navigation_t.
 void encode_navigation(std::int64_t utime, std::int64_t sequence, const NavigationState<double>& state,
