@@ -64,7 +64,8 @@ long long apply_to_log(const std::string& input, const io::LcmChannels& channels
     if (corrected.empty()) continue;  // damaged, and counted
     message = event.data;             // stamps, sequence and temperature stay
     if (!io::replace_samples(corrected, message))
-      throw io::input_error(input, 0, "channel " + channels.imu.name, "is not of type imu_t or imu_batch_t: apply cannot write it again");
+      throw io::input_error(input, 0, "channel " + channels.imu.name,
+                            "is not of type imu_t or imu_batch_t: apply cannot write it again");
     out.write(event.timestamp, event.channel, message);
   }
   decoder.finish();
@@ -128,8 +129,8 @@ void apply(const Options& o) {
   sources.insert(sources.end(), {o.input, o.calibration});
   keep_inputs(o.output, sources);
   const UnitCorrection<double> correction(unit);
-  const long long samples = table ? apply_to_table(o, run, files, correction)
-                                  : apply_to_log(files.lcm, run.channels, o.output, correction);
+  const long long samples =
+      table ? apply_to_table(o, run, files, correction) : apply_to_log(files.lcm, run.channels, o.output, correction);
   std::printf("%s: %lld samples corrected\n", o.output.c_str(), samples);
 }
 

@@ -87,6 +87,7 @@ void collect(RunInputs& inputs, std::vector<RunInputs>& each) {
   for (RunInputs& one : each) {
     inputs.losses.records += one.losses.records;
     inputs.losses.bytes += one.losses.bytes;
+    inputs.losses.samples += one.losses.samples;
     for (auto& digest : one.digests) inputs.digests.push_back(std::move(digest));
   }
 }

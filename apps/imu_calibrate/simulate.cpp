@@ -30,9 +30,44 @@ struct Options {
   double gravity_sigma = 1e-5;
   double outliers_percent = 0.0;
   double dropped_percent = 0.0;
+  int batch = 1;
   bool noise_free = false;
   bool rest_only = false;
   bool no_sheet = false;
+};
+
+/// Samples into messages of one, or of several.
+class ImuMessages {
+ public:
+  ImuMessages(int batch, io::LcmLogWriter& log) : batch_(static_cast<std::size_t>(batch)), log_(log) {}
+  void add(std::int64_t utime, std::int64_t sequence, const InertialSample<double>& sample) {
+    if (batch_ == 1) {
+      io::encode_imu(utime, sequence, sample, message_);
+      log_.write(utime, "IMU", message_);
+      return;
+    }
+    // a batch has consecutive numbers: what was lost stands between two
+    if (!utime_.empty() && sequence != first_ + static_cast<std::int64_t>(utime_.size())) finish();
+    if (utime_.empty()) first_ = sequence;
+    utime_.push_back(utime);
+    samples_.push_back(sample);
+    if (utime_.size() == batch_) finish();
+  }
+  void finish() {
+    if (utime_.empty()) return;
+    io::encode_imu_batch(first_, utime_, samples_, message_);
+    log_.write(utime_.back(), "IMU", message_);
+    utime_.clear();
+    samples_.clear();
+  }
+
+ private:
+  std::size_t batch_;
+  io::LcmLogWriter& log_;
+  std::int64_t first_ = 0;
+  std::vector<std::int64_t> utime_;
+  std::vector<InertialSample<double>> samples_;
+  std::string message_;
 };
 
 void simulate(const Options& o) {
@@ -69,10 +104,10 @@ void simulate(const Options& o) {
     progress.show("simulating " + name);
     io::LcmLogWriter log((folder / name).string());
     std::string message;
+    ImuMessages imu(o.batch, log);
     simulation::TableSinks sinks;
     sinks.imu = [&](std::int64_t utime, std::int64_t sequence, const InertialSample<double>& sample) {
-      io::encode_imu(utime, sequence, sample, message);
-      log.write(utime, "IMU", message);
+      imu.add(utime, sequence, sample);
     };
     sinks.encoder = [&](std::int64_t utime, std::int64_t sequence, double azimuth, double pitch) {
       io::encode_encoder(utime, sequence, azimuth, pitch, message);
@@ -81,6 +116,7 @@ void simulate(const Options& o) {
     const simulation::TableMotion motion = o.rest_only ? simulation::rest_only(rig.pitch_lower, rig.pitch_upper)
                                                        : simulation::experiment(rig.pitch_lower, rig.pitch_upper, m);
     simulation::run_table(settings, truth, rig.rig, site, motion, m, m, sinks);
+    imu.finish();
     log.commit();
     run += "  - {mount: " + rig.mounts[static_cast<std::size_t>(m)] + ", log: " + name + "}\n";
   }
@@ -131,6 +167,9 @@ void add_simulate(CLI::App& app, ExitCode& exit_code) {
   command->add_option("--dropped-percent", o->dropped_percent, "Samples that are lost")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 99.0));
+  command->add_option("--batch", o->batch, "Samples a message: imu_t, or imu_batch_t")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1000));
   command->add_flag("--noise-free", o->noise_free, "No noise, no wander, exact encoders");
   command->add_flag("--rest-only", o->rest_only, "The table never turns: a run that cannot be solved");
   command->add_flag("--no-sheet", o->no_sheet, "Leave the sheet out of the run file");

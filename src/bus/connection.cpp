@@ -28,14 +28,17 @@ std::string literally(const std::string& channel) {
   return pattern;
 }
 
-bool has_provider(const std::string& url, const char* provider) { return url.rfind(std::string(provider) + "://", 0) == 0; }
+bool has_provider(const std::string& url, const char* provider) {
+  return url.rfind(std::string(provider) + "://", 0) == 0;
+}
 
 /// LCM takes any host name for this machine: only addresses are let through.
 void check_tcpq(const std::string& url) {
   const std::string host = url.substr(7, url.find_first_of(":?/", 7) - 7);
   in_addr address{};
   if (!host.empty() && ::inet_pton(AF_INET, host.c_str(), &address) != 1)
-    throw Error(ExitCode::kTransport, url + ": '" + host + "' should be an address like 127.0.0.1: LCM does not look names up");
+    throw Error(ExitCode::kTransport,
+                url + ": '" + host + "' should be an address like 127.0.0.1: LCM does not look names up");
 }
 
 }  // namespace
@@ -72,7 +75,9 @@ struct Connection::Implementation {
 Connection::Connection(const std::string& url) : implementation_(std::make_unique<Implementation>()) {
   Implementation& self = *implementation_;
   const char* const by_default = std::getenv("LCM_DEFAULT_URL");
-  self.url = !url.empty() ? url : by_default != nullptr && *by_default != '\0' ? by_default : "udpm://239.255.76.67:7667?ttl=0";
+  self.url = !url.empty()                                   ? url
+             : by_default != nullptr && *by_default != '\0' ? by_default
+                                                            : "udpm://239.255.76.67:7667?ttl=0";
   if (has_provider(self.url, "tcpq")) check_tcpq(self.url);
   self.lcm = lcm_create(self.url.c_str());
   if (self.lcm == nullptr) {

@@ -29,7 +29,8 @@ ReplayFigures replay(io::LcmLogReader& log, Connection& connection, const Replay
       began = t;
       wall = Clock::now();
     } else if (options.speed > 0.0) {
-      const auto due = wall + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>((t - began) / options.speed));
+      const auto due = wall + std::chrono::duration_cast<Clock::duration>(
+                                  std::chrono::duration<double>((t - began) / options.speed));
       const Clock::time_point now = Clock::now();
       if (due > now) {
         std::this_thread::sleep_until(due);

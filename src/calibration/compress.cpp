@@ -236,4 +236,15 @@ CompressedRecording Compressor::finish() {
   return std::move(result_);
 }
 
+CompressedRecording Compressor::so_far(std::size_t from) const {
+  CompressedRecording part;
+  part.name = result_.name;
+  part.windows.assign(result_.windows.begin() + static_cast<std::ptrdiff_t>(std::min(from, result_.windows.size())),
+                      result_.windows.end());
+  part.course = result_.course;
+  part.course.finish();
+  part.figures = result_.figures;
+  return part;
+}
+
 }  // namespace trunnion::calibration

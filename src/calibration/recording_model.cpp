@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <type_traits>
 
@@ -123,15 +124,19 @@ struct RecordingModel::WindowInput {
 
 RecordingModel::RecordingModel(const TableRecording& recording, std::size_t index, const Rig& rig, const Site& site,
                                const Layout& layout, double clock_offset)
-    : recording_(recording), index_(index), rig_(rig), site_(site), layout_(layout) {
-  const CompressedRecording& data = recording.data;
-  usable_.reserve(data.windows.size());
-  for (std::size_t k = 0; k < data.windows.size(); ++k) {
-    const double margin = data.windows[k].half_width + kWindowMargin;
-    const double t = data.windows[k].t - clock_offset;
-    if (data.course.covers(t - margin, t + margin)) usable_.push_back(k);
+    : recording_(recording), index_(index), first_offset_(clock_offset), rig_(rig), site_(site), layout_(layout) {
+  refresh();
+}
+
+void RecordingModel::refresh() {
+  const CompressedRecording& data = recording_.data;
+  for (; examined_ < data.windows.size(); ++examined_) {
+    const double margin = data.windows[examined_].half_width + kWindowMargin;
+    const double t = data.windows[examined_].t - first_offset_;
+    if (t + margin > data.course.end()) break;  // the encoders are not there yet
+    if (data.course.covers(t - margin, t + margin)) usable_.push_back(examined_);
   }
-  inflation_.assign(usable_.size(), {1, 1, 1, 1, 1, 1});
+  inflation_.resize(usable_.size(), {1, 1, 1, 1, 1, 1});
   if (usable_.empty()) return;
   // an end of a window is known from the readings of about one knot interval
   const double sigma = data.course.reading_sigma() * std::sqrt(data.course.period() / data.course.knot_spacing());
@@ -221,39 +226,78 @@ AxisMotion<T> RecordingModel::motion(const CourseValue& reading) const {
   }
 }
 
-template <bool kWithRows, class VisitRow>
-double RecordingModel::run(const CalibrationValues& values, Eigen::MatrixXd* normal, VisitRow&& visit) const {
-  const auto mount = static_cast<std::size_t>(recording_.mount);
-  Model model{rigged<double>(rig_, site_, values, mount), {}, {}, {}};
-  if constexpr (kWithRows) model.derived = rigged<Jet>(rig_, site_, values, mount);
-  // C_bp = Exp(-e) C_bp(nominal), and its derivatives to e
-  using MountJet = ceres::Jet<double, 3>;
-  Vec3<MountJet> minus_e;
-  for (int i = 0; i < 3; ++i) minus_e(i) = -MountJet(values.mount_error[mount](i), i);
-  const Mat3<MountJet> turned = rotation_exp<MountJet>(minus_e) * rig_.mount[mount].C_pb.transpose().cast<MountJet>();
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) {
-      model.C_bp(i, j) = turned(i, j).a;
-      for (std::size_t e = 0; e < 3; ++e) model.dC_bp[e](i, j) = turned(i, j).v(static_cast<Eigen::Index>(e));
+/// A pass over the windows at one estimate, which may go on when there are more of them.
+template <bool kWithRows>
+struct RecordingModel::Pass {
+  using Whitened = std::conditional_t<kWithRows, Row, Eigen::Matrix<double, 1, 1>>;
+
+  Pass(const RecordingModel& of, const CalibrationValues& at)
+      : values(at),
+        model{rigged<double>(of.rig_, of.site_, at, of.mount()), {}, {}, {}},
+        row_normal(kWithRows ? 6 : 0) {
+    const std::size_t mount = of.mount();
+    if constexpr (kWithRows) model.derived = rigged<Jet>(of.rig_, of.site_, at, mount);
+    // C_bp = Exp(-e) C_bp(nominal), and its derivatives to e
+    using MountJet = ceres::Jet<double, 3>;
+    Vec3<MountJet> minus_e;
+    for (int i = 0; i < 3; ++i) minus_e(i) = -MountJet(at.mount_error[mount](i), i);
+    const Mat3<MountJet> turned =
+        rotation_exp<MountJet>(minus_e) * of.rig_.mount[mount].C_pb.transpose().template cast<MountJet>();
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) {
+        model.C_bp(i, j) = turned(i, j).a;
+        for (std::size_t e = 0; e < 3; ++e) model.dC_bp[e](i, j) = turned(i, j).v(static_cast<Eigen::Index>(e));
+      }
     }
+    whitening.reserve(6);
+    for (int row = 0; row < 6; ++row)
+      whitening.emplace_back(row < 3 ? of.noise_.gyro : of.noise_.accel, Whitened::Zero());
   }
 
-  std::vector<NormalMatrix> row_normal(kWithRows ? 6 : 0);
-  using Whitened = std::conditional_t<kWithRows, Row, Eigen::Matrix<double, 1, 1>>;
+  CalibrationValues values;
+  Model model;
+  std::vector<NormalMatrix> row_normal;
   std::vector<Whitening<Whitened>> whitening;
-  whitening.reserve(6);
-  for (int row = 0; row < 6; ++row) whitening.emplace_back(row < 3 ? noise_.gyro : noise_.accel, Whitened::Zero());
+  std::size_t next = 0;  // window
+  double cost = 0.0;
+};
 
+template <bool kWithRows, class VisitRow>
+double RecordingModel::run(const CalibrationValues& values, Eigen::MatrixXd* normal, VisitRow&& visit) const {
+  Pass<kWithRows> pass(*this, values);
+  advance(pass, visit);
+  if constexpr (kWithRows) {
+    for (int row = 0; row < 6; ++row) scatter(row, pass.row_normal[static_cast<std::size_t>(row)].total(), *normal);
+  }
+  return pass.cost;
+}
+
+RecordingModel::Linearisation::Linearisation(const RecordingModel& model, const CalibrationValues& values)
+    : model_(&model), pass_(std::make_unique<Pass<true>>(model, values)) {}
+RecordingModel::Linearisation::Linearisation(Linearisation&&) noexcept = default;
+RecordingModel::Linearisation::~Linearisation() = default;
+
+void RecordingModel::Linearisation::extend(const Visit& visit) { model_->advance(*pass_, visit); }
+
+void RecordingModel::Linearisation::add_to(Eigen::MatrixXd& normal) {
+  for (int row = 0; row < 6; ++row)
+    model_->scatter(row, pass_->row_normal[static_cast<std::size_t>(row)].total(), normal);
+}
+
+/// Takes the windows from the pass's next one on.
+template <bool kWithRows, class VisitRow>
+void RecordingModel::advance(Pass<kWithRows>& pass, VisitRow&& visit) const {
+  const CalibrationValues& values = pass.values;
   const InertialUnit<double>& unit = values.unit;
   const Mat3<double> K_g = unit.gyro.matrix();
   const Mat3<double> K_a = unit.accel.matrix();
   const Vec3<double> bias_g = values.recording_bias[index_].w;
   const Vec3<double> bias_a = values.recording_bias[index_].f;
-  double cost = 0.0;
   WindowInput in;
-  for (std::size_t k = 0; k < usable_.size(); k += stride_) {
+  for (; pass.next < usable_.size(); pass.next += stride_) {
+    const std::size_t k = pass.next;
     const ObservationWindow& window = this->window(k);
-    const bool moving = window_input<kWithRows>(model, window, values.clock_offset, in);
+    const bool moving = window_input<kWithRows>(pass.model, window, values.clock_offset, in);
     const Vec3<double> r_g =
         window.mean.w - (K_g * in.w + bias_g + unit.gyro.cubic.cwiseProduct(in.w3) + unit.g_sensitivity * in.f);
     const Vec3<double> r_a = window.mean.f - (K_a * in.f + bias_a + unit.accel.quadratic.cwiseProduct(in.f2));
@@ -268,7 +312,7 @@ double RecordingModel::run(const CalibrationValues& values, Eigen::MatrixXd* nor
     for (int row = 0; row < 6; ++row) {
       const int i = row % 3;
       const bool gyro = row < 3;
-      auto& filter = whitening[static_cast<std::size_t>(row)];
+      auto& filter = pass.whitening[static_cast<std::size_t>(row)];
       const double inflation = static_cast<double>(inflation_[k][static_cast<std::size_t>(row)]);
       filter.predict(window.t, variance(k, row, moving) * inflation);
       const double residual = gyro ? r_g(i) : r_a(i);
@@ -286,19 +330,15 @@ double RecordingModel::run(const CalibrationValues& values, Eigen::MatrixXd* nor
         v.segment<kSharedPlaces>(kOwnPlaces) = gyro ? dr_g.row(i).transpose() : dr_a.row(i).transpose();
         v(kPlaces) = residual;
         const Row e = filter.innovate(v);
-        row_normal[static_cast<std::size_t>(row)].add(e);
+        pass.row_normal[static_cast<std::size_t>(row)].add(e);
         innovation = e(kPlaces);
       } else {
         innovation = filter.innovate(Eigen::Matrix<double, 1, 1>(residual))(0);
       }
-      cost += innovation * innovation;
+      pass.cost += innovation * innovation;
       visit(k, row, residual, innovation);
     }
   }
-  if constexpr (kWithRows) {
-    for (int row = 0; row < 6; ++row) scatter(row, row_normal[static_cast<std::size_t>(row)].total(), *normal);
-  }
-  return cost;
 }
 
 /// Mean input over the window's samples, and its derivatives. @return whether the rig moves in it

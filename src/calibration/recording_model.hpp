@@ -12,6 +12,7 @@
 #include <array>
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <vector>
 
 #include "trunnion/calibration/parameters.hpp"
@@ -26,6 +27,9 @@ class RecordingModel {
   /// references must outlive the model.
   RecordingModel(const TableRecording& recording, std::size_t index, const Rig& rig, const Site& site,
                  const Layout& layout, double clock_offset);
+
+  /// Takes in the windows that came, and for which the encoders are there.
+  void refresh();
 
   /// Windows that have samples and encoders on all sides.
   [[nodiscard]] std::size_t windows() const { return usable_.size(); }
@@ -59,12 +63,36 @@ class RecordingModel {
  private:
   struct Model;
   struct WindowInput;
+  template <bool kWithRows>
+  struct Pass;
 
+ public:
+  /// Normal equations at one estimate, to which windows are added as they come.
+  class Linearisation {
+   public:
+    /// The model must outlive it.
+    Linearisation(const RecordingModel& model, const CalibrationValues& values);
+    Linearisation(Linearisation&& other) noexcept;
+    ~Linearisation();
+    /// Takes the windows since the last call.
+    void extend(const Visit& visit);
+    /// Adds J^T J, J^T r and r^T r as evaluate() does.
+    void add_to(Eigen::MatrixXd& normal);
+
+   private:
+    const RecordingModel* model_;
+    std::unique_ptr<Pass<true>> pass_;
+  };
+
+ private:
   [[nodiscard]] double variance(std::size_t k, int row, bool moving) const;
   template <class T>
   [[nodiscard]] AxisMotion<T> motion(const CourseValue& reading) const;
   template <bool kWithRows, class VisitRow>
   double run(const CalibrationValues& values, Eigen::MatrixXd* normal, VisitRow&& visit) const;
+  template <bool kWithRows, class VisitRow>
+  void advance(Pass<kWithRows>& pass, VisitRow&& visit) const;
+  [[nodiscard]] std::size_t mount() const { return static_cast<std::size_t>(recording_.mount); }
   template <bool kWithRows>
   bool window_input(const Model& model, const ObservationWindow& window, double offset, WindowInput& in) const;
   void add_derivatives(const Model& model, const std::array<CourseValue, 2>& reading, double weight,
@@ -74,6 +102,8 @@ class RecordingModel {
 
   const TableRecording& recording_;
   std::size_t index_;
+  double first_offset_;  // of the clocks, where the encoders are looked for
+  std::size_t examined_ = 0;
   const Rig& rig_;
   const Site& site_;
   const Layout& layout_;

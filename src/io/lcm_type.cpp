@@ -282,8 +282,8 @@ LcmFieldReader::LcmFieldReader(const LcmTypes& types, const std::string& type, c
 }
 
 bool LcmFieldReader::primitive_of(const std::string& type, Primitive& primitive) {
-  constexpr std::array<Primitive, 9> kOf = {Primitive::kInt8, Primitive::kInt16,   Primitive::kInt32,
-                                            Primitive::kInt64, Primitive::kByte,    Primitive::kBoolean,
+  constexpr std::array<Primitive, 9> kOf = {Primitive::kInt8,  Primitive::kInt16,  Primitive::kInt32,
+                                            Primitive::kInt64, Primitive::kByte,   Primitive::kBoolean,
                                             Primitive::kFloat, Primitive::kDouble, Primitive::kString};
   for (std::size_t i = 0; i < kPrimitives.size(); ++i) {
     if (type == kPrimitives[i]) {
@@ -334,8 +334,8 @@ void LcmFieldReader::compile(const LcmTypes& types, const std::string& type, con
     std::string name = w.path.empty() ? "" : w.path.front();
     long long index = -1;
     const bool whole = split_index(name, index);
-    const auto found = std::find_if(s.members.begin(), s.members.end(),
-                                    [&](const LcmMember& member) { return member.name == name; });
+    const auto found =
+        std::find_if(s.members.begin(), s.members.end(), [&](const LcmMember& member) { return member.name == name; });
     if (!whole || found == s.members.end()) {
       std::string fields;
       for (const LcmMember& member : s.members) fields += (fields.empty() ? "" : ", ") + member.name;
@@ -396,16 +396,18 @@ void LcmFieldReader::compile_member(const LcmTypes& types, const LcmMember& memb
     program_[loop].target = program_.size();
     return;
   }
-  if (!inside.empty()) throw Error(ExitCode::kInput, "'" + member.name + "' is a " + member.type + " and has no fields");
+  if (!inside.empty())
+    throw Error(ExitCode::kInput, "'" + member.name + "' is a " + member.type + " and has no fields");
   step.bytes = size_of(step.primitive);
   for (const Capture& capture : step.captures) {
     if (capture.index >= 0 && step.counters.empty() && static_cast<std::size_t>(capture.index) >= step.constant) {
       throw Error(ExitCode::kInput, "'" + member.name + "' has " + std::to_string(step.constant) + " elements, not " +
                                         std::to_string(capture.index + 1));
     }
-    field_[capture.field].kind = step.primitive == Primitive::kString                                             ? Kind::kText
-                 : step.primitive == Primitive::kDouble || step.primitive == Primitive::kFloat ? Kind::kReal
-                                                                                               : Kind::kInteger;
+    field_[capture.field].kind = step.primitive == Primitive::kString ? Kind::kText
+                                 : step.primitive == Primitive::kDouble || step.primitive == Primitive::kFloat
+                                     ? Kind::kReal
+                                     : Kind::kInteger;
   }
   if (step.primitive == Primitive::kString) {
     step.operation = Operation::kTexts;

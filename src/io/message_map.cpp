@@ -31,7 +31,8 @@ std::vector<std::string> paths_of(const MessageMap& map) {
 MappedMessages::Scale MappedMessages::scale_of(const char* quantity, const FieldChoice& choice,
                                                const SensorSheet& sheet, const char* delta) {
   if (choice.unit == "counts") {
-    const NominalScale<double>& counts = std::string_view(quantity) == "gyro_x" ? sheet.counts.gyro : sheet.counts.accel;
+    const NominalScale<double>& counts =
+        std::string_view(quantity) == "gyro_x" ? sheet.counts.gyro : sheet.counts.accel;
     return {1.0 / counts.scale, counts.zero};
   }
   if (choice.unit == delta) {
@@ -63,7 +64,8 @@ MappedMessages::MappedMessages(std::shared_ptr<const MessageMap> map, const Sens
     throw Error(ExitCode::kInput, "field '" + map_->sequence + "' of " + map_->type + " is no integer");
   if (map_->clock == MessageMap::Clock::kField) {
     time_si_ = unit_in_si("t", map_->time.unit);
-    if (time_si_ == 0.0) throw Error(ExitCode::kInput, "unit '" + map_->time.unit + "': should be one of s, ms, us, ns");
+    if (time_si_ == 0.0)
+      throw Error(ExitCode::kInput, "unit '" + map_->time.unit + "': should be one of s, ms, us, ns");
   }
   if (!map_->gyro.fields.empty()) gyro_scale_ = scale_of("gyro_x", map_->gyro, sheet, "rad");
   if (!map_->accel.fields.empty()) accel_scale_ = scale_of("accel_x", map_->accel, sheet, "m/s");
@@ -163,7 +165,8 @@ std::string MappedMessages::imu(const LcmEvent& event, std::vector<Sample>& samp
     Sample& sample = samples[k];
     const std::string wrong = time_of(event, stamps == n ? k : 0, sample.utime);
     if (!wrong.empty()) return wrong;
-    if (stamps != n) sample.utime -= static_cast<std::int64_t>(std::llround(1e6 * period_ * static_cast<double>(n - 1 - k)));
+    if (stamps != n)
+      sample.utime -= static_cast<std::int64_t>(std::llround(1e6 * period_ * static_cast<double>(n - 1 - k)));
     if (numbers == n) {
       sample.sequence = reader_.integers(sequence_)[k];
     } else if (numbers > 0) {

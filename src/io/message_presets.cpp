@@ -80,7 +80,8 @@ std::vector<MessagePreset> make_presets() {
                         {{"raw_imu.linear_acceleration"}, "m/s^2"});
   kvh.time.fields = {"raw_imu.utime"};
   kvh.sequence = "raw_imu.packet_count";
-  imu("cheetah.microstrain_lcmt", "microstrain", {{"omega"}, "rad/s"}, {{"acc"}, "m/s^2"}).clock = MessageMap::Clock::kLog;
+  imu("cheetah.microstrain_lcmt", "microstrain", {{"omega"}, "rad/s"}, {{"acc"}, "m/s^2"}).clock =
+      MessageMap::Clock::kLog;
   imu("cheetah.vectornav_lcmt", "hw_vectornav", {{"w"}, "rad/s"}, {{"a"}, "m/s^2"}).clock = MessageMap::Clock::kLog;
   imu("mbot_lcm_msgs.mbot_imu_t", "MBOT_IMU", {{"gyro"}, "rad/s"}, {{"accel"}, "m/s^2"});
   split(imu("sensor_msgs.Imu", "", {{"angular_velocity.x", "angular_velocity.y", "angular_velocity.z"}, "rad/s"},

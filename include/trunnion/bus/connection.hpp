@@ -41,7 +41,8 @@ class Connection {
   template <class Object>
   void subscribe(const std::string& channel, void (Object::*method)(const io::LcmEvent&), Object& object,
                  int queue = kQueue) {
-    subscribe(channel, [&object, method](const io::LcmEvent& event) { (object.*method)(event); }, queue);
+    subscribe(
+        channel, [&object, method](const io::LcmEvent& event) { (object.*method)(event); }, queue);
   }
 
   /// @throws Error (transport) when the message cannot be sent

@@ -53,6 +53,10 @@ class Compressor final : public SampleSink {
   /// overlap in time
   CompressedRecording finish();
 
+  /// What is there before the end: windows from number @p from on, the course of the encoders so far, the figures.
+  [[nodiscard]] CompressedRecording so_far(std::size_t from) const;
+  [[nodiscard]] const RecordingFigures& figures() const { return result_.figures; }
+
  private:
   double seconds(std::int64_t utime);
   void place(double t, const InertialSample<double>& sample);

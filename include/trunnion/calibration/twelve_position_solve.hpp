@@ -36,6 +36,7 @@ struct TableSolveOptions {
   bool noise_from_data = false;          ///< white noise from the rests, wander by restricted maximum likelihood
   UnitNoise noise;                       ///< where it is not from the data
   std::vector<std::string> mount_names;  ///< one a mount of the rig, for messages
+  int threads = 0;                       ///< 0: as many as the machine has
   std::function<void(const std::string&)> progress;  ///< told once a stage; may be empty
 };
 

@@ -77,8 +77,7 @@ class MappedMessages {
 
   /// @return empty, or what is wrong with the message
   std::string imu(const LcmEvent& event, std::vector<Sample>& samples);
-  std::string encoder(const LcmEvent& event, std::int64_t& utime, std::int64_t& sequence,
-                      std::array<double, 2>& angle);
+  std::string encoder(const LcmEvent& event, std::int64_t& utime, std::int64_t& sequence, std::array<double, 2>& angle);
 
   [[nodiscard]] bool has_sequence() const { return !map_->sequence.empty(); }
 
