@@ -40,6 +40,7 @@ class RecordingModel {
   void set_stride(std::size_t stride) { stride_ = stride; }
   /// Robust inflation of the measurement variance: per window, rows 0-2 gyro, 3-5 accelerometer; 1 is full weight.
   [[nodiscard]] std::vector<std::array<float, 6>>& inflation() { return inflation_; }
+  [[nodiscard]] const std::vector<std::array<float, 6>>& inflation() const { return inflation_; }
 
   /// Sum of the squared innovations. With @p normal also adds J^T J, J^T r and r^T r over (unknowns, residual).
   double evaluate(const CalibrationValues& values, Eigen::MatrixXd* normal) const;

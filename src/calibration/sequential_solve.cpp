@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <deque>
+#include <numeric>
 
 #include "table_problem.hpp"
 #include "trunnion/core/units.hpp"
@@ -15,10 +16,12 @@
 namespace trunnion::calibration {
 namespace {
 
-constexpr std::size_t kEnough = 50;    // windows of a recording
-constexpr double kGrown = 1.33;        // windows since the last linearisation
-constexpr double kSettled = 1.1;       // ... before a move of the estimate is followed
-constexpr double kMoved = 0.5;         // sigmas
+constexpr std::size_t kEnough = 50;  // windows of a recording
+constexpr double kGrown = 1.33;      // windows since the last linearisation
+constexpr double kSettled = 1.1;     // ... before a move of the estimate is followed
+constexpr double kMoved = 0.5;       // sigmas
+constexpr double kMisfit = 3.0;      // reduced chi-square of the last windows: the estimate does not know them yet
+constexpr double kLargestSquare = 1e6;
 constexpr std::size_t kRecent = 50;    // windows
 constexpr double kKnownHeading = 0.1;  // rad, 1 sigma: no other quarter can be meant
 constexpr double kFloor = 1e-300;
@@ -41,21 +44,32 @@ struct SequentialSolve::State {
     auto next = std::make_unique<TableProblem>(recordings, rig, site, options, true);
     at = next->estimate(estimate.values, !(heading_sigma < kKnownHeading));
     problem = std::move(next);
-    innovations.clear();
     for (const auto& model : problem->models()) linearisations.emplace_back(*model, at);
+    recent.clear();
     extend();
+    estimate.chi_square = recent_chi_square();
     linearised = usable();
     ++estimate.linearisations;
   }
 
-  /// Adds the windows that came to the normal equations.
+  /// Adds the windows that came to the normal equations, and looks how the last recording's last ones fit.
   void extend() {
-    for (auto& linearisation : linearisations) {
-      linearisation.extend([&](std::size_t, int, double, double innovation) {
-        innovations.push_back(innovation * innovation);
-        if (innovations.size() > 6 * kRecent) innovations.pop_front();
+    for (std::size_t r = 0; r < linearisations.size(); ++r) {
+      const bool last = r + 1 == linearisations.size();
+      const RecordingModel& model = *problem->models()[r];
+      linearisations[r].extend([&](std::size_t window, int row, double, double innovation) {
+        if (!last) return;
+        // as if it had full weight
+        const auto inflation = static_cast<double>(model.inflation()[window][static_cast<std::size_t>(row)]);
+        recent.push_back(std::min(innovation * innovation * inflation, kLargestSquare));
+        if (recent.size() > 6 * kRecent) recent.pop_front();
       });
     }
+  }
+
+  [[nodiscard]] double recent_chi_square() const {
+    if (recent.size() < 6 * kRecent) return 0.0;
+    return std::accumulate(recent.begin(), recent.end(), 0.0) / static_cast<double>(recent.size());
   }
 
   /// Eq. (1).
@@ -86,9 +100,6 @@ struct SequentialSolve::State {
     layout.read(estimate.x, estimate.values);
     estimate.windows = usable();
     heading_sigma = estimate.sigma(layout.heading);
-    double sum = 0.0;
-    for (const double square : innovations) sum += std::min(square, 1e6);
-    estimate.chi_square = innovations.size() < 6 * kRecent ? 0.0 : sum / static_cast<double>(innovations.size());
   }
 
   const Rig& rig;
@@ -102,7 +113,7 @@ struct SequentialSolve::State {
   std::size_t linearised = 0;
   double heading_sigma = kPi;
   double moved = 0.0;
-  std::deque<double> innovations;  // squares, of the last windows
+  std::deque<double> recent;  // squared innovations of the last windows
   RunningEstimate estimate;
 };
 
@@ -163,6 +174,7 @@ const RunningEstimate& SequentialSolve::update(CompressedRecording part) {
   s.solve();
   const auto grown = static_cast<double>(s.usable());
   if (grown > kGrown * static_cast<double>(s.linearised) ||
+      (s.recent_chi_square() > kMisfit && grown > static_cast<double>(s.linearised + kRecent)) ||
       (s.moved > kMoved && grown > kSettled * static_cast<double>(s.linearised) + 20.0)) {
     s.linearise();
     s.solve();

@@ -19,7 +19,6 @@ namespace trunnion::io {
 namespace {
 
 constexpr std::uint32_t kSync = 0xEDA1DA01U;
-constexpr std::size_t kHeader = 28;
 constexpr std::size_t kBlock = std::size_t{1} << 18U;  // stays in the cache
 
 }  // namespace
@@ -148,15 +147,20 @@ bool LcmLogReader::next(LcmEvent& event) {
   }
 }
 
+void append_lcm_record(std::int64_t number, std::int64_t timestamp, std::string_view channel, std::string_view data,
+                       std::string& out) {
+  append_unsigned(out, kSync);
+  append_i64(out, number);
+  append_i64(out, timestamp);
+  append_unsigned(out, static_cast<std::uint32_t>(channel.size()));
+  append_unsigned(out, static_cast<std::uint32_t>(data.size()));
+  out.append(channel);
+  out.append(data);
+}
+
 void LcmLogWriter::write(std::int64_t timestamp, std::string_view channel, std::string_view data) {
   record_.clear();
-  append_unsigned(record_, kSync);
-  append_i64(record_, number_++);
-  append_i64(record_, timestamp);
-  append_unsigned(record_, static_cast<std::uint32_t>(channel.size()));
-  append_unsigned(record_, static_cast<std::uint32_t>(data.size()));
-  record_.append(channel);
-  record_.append(data);
+  append_lcm_record(number_++, timestamp, channel, data, record_);
   file_.write(record_);
 }
 

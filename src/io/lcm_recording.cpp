@@ -55,13 +55,13 @@ void LcmDecoder::imu(const LcmEvent& event) {
     deliver(event, load_i64(p + 8), sample);
   } else if (fingerprint == kImuBatchFingerprint && event.data.size() >= kBatchHead) {
     batch(event);
-  } else if (fingerprint == kImuCountsFingerprint && event.data.size() == kCountsBytes) {
-    for (int i = 0; i < 3; ++i) {
-      sample.w(i) = (static_cast<std::int32_t>(load_u32(p + 24 + 4 * i)) - counts_.gyro.zero) / counts_.gyro.scale;
-      sample.f(i) = (static_cast<std::int32_t>(load_u32(p + 36 + 4 * i)) - counts_.accel.zero) / counts_.accel.scale;
+  } else if (const auto raw = decode_imu_counts(event.data)) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      sample.w(static_cast<int>(i)) = (raw->counts[i] - counts_.gyro.zero) / counts_.gyro.scale;
+      sample.f(static_cast<int>(i)) = (raw->counts[i + 3] - counts_.accel.zero) / counts_.accel.scale;
     }
-    imu_sequence_.add(load_i64(p + kSequence));
-    deliver(event, load_i64(p + 8), sample);
+    imu_sequence_.add(raw->sequence);
+    deliver(event, raw->utime, sample);
   } else {
     damage(event, foreign(event, fingerprint,
                           "trunnion_lcm.imu_t (" + hexadecimal(kImuFingerprint) + ") or trunnion_lcm.imu_batch_t (" +
@@ -224,14 +224,15 @@ bool replace_samples(const std::vector<InertialSample<double>>& samples, std::st
   return true;
 }
 
-void encode_imu(std::int64_t utime, std::int64_t sequence, const InertialSample<double>& sample, std::string& out) {
+void encode_imu(std::int64_t utime, std::int64_t sequence, const InertialSample<double>& sample, std::string& out,
+                double temperature) {
   out.clear();
   append_unsigned(out, kImuFingerprint);
   append_i64(out, utime);
   append_i64(out, sequence);
   for (int i = 0; i < 3; ++i) append_double(out, sample.w(i));
   for (int i = 0; i < 3; ++i) append_double(out, sample.f(i));
-  append_double(out, std::nan(""));
+  append_double(out, temperature);
 }
 
 void encode_imu_batch(std::int64_t sequence, const std::vector<std::int64_t>& utime,
@@ -248,14 +249,31 @@ void encode_imu_batch(std::int64_t sequence, const std::vector<std::int64_t>& ut
   append_double(out, std::nan(""));
 }
 
-void encode_imu_counts(std::int64_t utime, std::int64_t sequence, const UnitOutput<std::int32_t>& counts,
-                       std::int32_t temperature, std::string& out) {
+void encode_imu_counts(const ImuCounts& sample, std::string& out) {
   out.clear();
   append_unsigned(out, kImuCountsFingerprint);
-  append_i64(out, utime);
-  append_i64(out, sequence);
-  for (const std::int32_t count : counts) append_unsigned(out, static_cast<std::uint32_t>(count));
-  append_unsigned(out, static_cast<std::uint32_t>(temperature));
+  append_i64(out, sample.utime);
+  append_i64(out, sample.sequence);
+  for (const std::int32_t count : sample.counts) append_unsigned(out, static_cast<std::uint32_t>(count));
+  append_unsigned(out, static_cast<std::uint32_t>(sample.temperature));
+}
+
+std::optional<ImuCounts> decode_imu_counts(std::string_view message) {
+  const char* p = message.data();
+  if (message.size() != kCountsBytes || load_u64(p) != kImuCountsFingerprint) return std::nullopt;
+  ImuCounts sample;
+  sample.utime = load_i64(p + 8);
+  sample.sequence = load_i64(p + kSequence);
+  for (std::size_t i = 0; i < sample.counts.size(); ++i)
+    sample.counts[i] = static_cast<std::int32_t>(load_u32(p + kImuHead + 4 * i));
+  sample.temperature = static_cast<std::int32_t>(load_u32(p + kImuHead + 24));
+  return sample;
+}
+
+double temperature_of(std::string_view message) {
+  const std::uint64_t fingerprint = message.size() >= kImuHead + 8 ? load_u64(message.data()) : 0;
+  if (fingerprint != kImuFingerprint && fingerprint != kImuBatchFingerprint) return std::nan("");
+  return load_double(message.data() + message.size() - 8);
 }
 
 void encode_encoder(std::int64_t utime, std::int64_t sequence, double azimuth, double pitch, std::string& out) {

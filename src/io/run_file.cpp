@@ -56,6 +56,30 @@ ColumnMap read_columns(const StrictYaml& node) {
   return columns;
 }
 
+PlanRequest read_plan(const StrictYaml& node) {
+  PlanRequest plan;
+  node.only({"rests", "turns"});
+  if (node.has("rests")) {
+    const StrictYaml rests = node.at("rests");
+    rests.only({"zones", "seconds"});
+    if (rests.has("zones")) plan.rest_zones = static_cast<int>(rests.at("zones").number_in(1.0, TablePlan::kMostZones));
+    if (rests.has("seconds")) plan.rest_seconds = rests.at("seconds").number_in(1.0, 3600.0);
+  }
+  if (node.has("turns")) {
+    const StrictYaml turns = node.at("turns");
+    turns.only({"rates_deg_per_s", "seconds"});
+    if (turns.has("rates_deg_per_s")) {
+      const StrictYaml rates = turns.at("rates_deg_per_s");
+      if (rates.length() == 0 || rates.length() > PlanRequest::kMostRates)
+        rates.fail("should be 1 to " + std::to_string(PlanRequest::kMostRates) + " rates, each turned both ways");
+      plan.number_of_rates = static_cast<int>(rates.length());
+      for (std::size_t i = 0; i < rates.length(); ++i) plan.rates[i] = rates.at(i).number_in(0.5, 2000.0) * kRadPerDeg;
+    }
+    if (turns.has("seconds")) plan.turn_seconds = turns.at("seconds").number_in(1.0, 3600.0);
+  }
+  return plan;
+}
+
 RecordingFiles read_files(const StrictYaml& node, const std::string& run, bool has_rig) {
   if (!has_rig && node.has("mount")) node.at("mount").fail(kNoRig);
   node.only(has_rig ? std::vector<std::string>{"mount", "log"} : std::vector<std::string>{"log"});
@@ -84,7 +108,7 @@ RecordingFiles read_files(const StrictYaml& node, const std::string& run, bool h
 RunFile read_run_file(const std::string& path) {
   const StrictYaml root = StrictYaml::load(path, "trunnion-run/1");
   root.only({"format", "site", "rig", "axes", "sheet", "serial", "clock", "bias", "model", "refuse_above", "recordings",
-             "limits", "channels", "lcm_types", "columns"});
+             "limits", "channels", "lcm_types", "columns", "plan"});
   RunFile run;
   run.path = path;
 
@@ -162,6 +186,7 @@ RunFile read_run_file(const std::string& path) {
     if (channels.has("imu")) run.channels.imu = read_channel(channels.at("imu"), true, types, run.sheet);
     if (channels.has("encoder")) run.channels.encoder = read_channel(channels.at("encoder"), false, types, run.sheet);
   }
+  if (root.has("plan")) run.plan = read_plan(root.at("plan"));
   if (root.has("columns")) run.columns = read_columns(root.at("columns"));
 
   const StrictYaml recordings = root.at("recordings");

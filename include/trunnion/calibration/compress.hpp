@@ -56,6 +56,10 @@ class Compressor final : public SampleSink {
   /// What is there before the end: windows from number @p from on, the course of the encoders so far, the figures.
   [[nodiscard]] CompressedRecording so_far(std::size_t from) const;
   [[nodiscard]] const RecordingFigures& figures() const { return result_.figures; }
+  /// Stamps of the unit and of the encoders that were out of their order.
+  [[nodiscard]] long long strays() const { return result_.figures.stray + encoder_figures_.stray; }
+  /// From the first sample to the last [s].
+  [[nodiscard]] double elapsed() const { return t_last_ - t_first_; }
 
  private:
   double seconds(std::int64_t utime);

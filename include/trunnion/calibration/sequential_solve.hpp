@@ -7,7 +7,7 @@
 ///   (1)
 ///
 /// Residuals and Jacobians are taken at x_0, so that a window is looked at once. When x_k has left x_0 by half a sigma,
-/// or the data have grown by a third, all windows are linearised anew from the estimate. P and m are priors as wide as
+/// the last windows do not fit, or the data have grown by a third, all windows are linearised anew from the estimate. P and m are priors as wide as
 /// an instrument can be wrong: what the data do not tell yet has a sigma as wide as that. The estimate leads the
 /// operator; the calibration itself is solve_table() of the same windows.
 /// Bierman, Factorization Methods for Discrete Sequential Estimation, ch. II; docs/theory/calibration.md, eq. 33.
@@ -29,7 +29,7 @@ struct RunningEstimate {
   Eigen::VectorXd sigma;  ///< SI; of what the data do not tell yet that of its wide prior
   CalibrationValues values;
   std::size_t windows = 0;
-  double chi_square = 0.0;  ///< reduced, of the last windows against the estimate that knows them; 0: none yet
+  double chi_square = 0.0;  ///< reduced, of the last windows at the last linearisation, which knows them; 0: too few
   int linearisations = 0;   ///< since the beginning
 };
 

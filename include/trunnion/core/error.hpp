@@ -19,6 +19,7 @@ enum class ExitCode : int {
   kNumerics = 4,
   kTransport = 5,
   kDefect = 70,
+  kInterrupted = 130,
 };
 
 /// A refusal in the user's words: "file:line: field: what is wrong and what to do".

@@ -31,6 +31,7 @@ struct LcmEvent {
 
 class LcmLogReader {
  public:
+  static constexpr std::size_t kHeader = 28;  ///< bytes of a record before channel and data
   static constexpr std::size_t kLongestChannel = 63;
   static constexpr std::size_t kLargestData = std::size_t{1} << 28U;
 
@@ -68,6 +69,10 @@ class LcmLogReader {
   long long lost_records_ = 0;
   long long lost_bytes_ = 0;
 };
+
+/// Appends one record to @p out.
+void append_lcm_record(std::int64_t number, std::int64_t timestamp, std::string_view channel, std::string_view data,
+                       std::string& out);
 
 class LcmLogWriter {
  public:

@@ -8,8 +8,10 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "trunnion/core/error.hpp"
@@ -107,13 +109,25 @@ LcmLosses read_lcm_recording(const std::string& path, const LcmChannels& channel
 bool replace_samples(const std::vector<InertialSample<double>>& samples, std::string& message);
 
 /// Encodes one message of type imu_t, or encoder_t with two axes, into @p out (cleared first).
-void encode_imu(std::int64_t utime, std::int64_t sequence, const InertialSample<double>& sample, std::string& out);
+/// A @p temperature [degC] that is not known is not a number.
+void encode_imu(std::int64_t utime, std::int64_t sequence, const InertialSample<double>& sample, std::string& out,
+                double temperature = std::numeric_limits<double>::quiet_NaN());
 /// Encodes one message of type imu_batch_t: as many samples as stamps, the first of them number @p sequence.
 void encode_imu_batch(std::int64_t sequence, const std::vector<std::int64_t>& utime,
                       const std::vector<InertialSample<double>>& samples, std::string& out);
+/// The content of a message of type imu_counts_t.
+struct ImuCounts {
+  std::int64_t utime = 0;
+  std::int64_t sequence = 0;
+  UnitOutput<std::int32_t> counts{};
+  std::int32_t temperature = 0;  ///< 1/256 degC; the lowest number: not measured
+};
+/// @return nothing for a message of another type
+std::optional<ImuCounts> decode_imu_counts(std::string_view message);
+/// The temperature of a message of type imu_t or imu_batch_t [degC]; not a number where it is not known, and of others.
+double temperature_of(std::string_view message);
 /// Encodes one message of type imu_counts_t: gyro x, y, z, accelerometer x, y, z, and 1/256 degC.
-void encode_imu_counts(std::int64_t utime, std::int64_t sequence, const UnitOutput<std::int32_t>& counts,
-                       std::int32_t temperature, std::string& out);
+void encode_imu_counts(const ImuCounts& sample, std::string& out);
 void encode_encoder(std::int64_t utime, std::int64_t sequence, double azimuth, double pitch, std::string& out);
 /// Encodes one message of type navigation_t.
 void encode_navigation(std::int64_t utime, std::int64_t sequence, const NavigationState<double>& state,

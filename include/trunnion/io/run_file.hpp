@@ -12,6 +12,7 @@
 #include "trunnion/io/csv.hpp"
 #include "trunnion/io/lcm_recording.hpp"
 #include "trunnion/positions/entry.hpp"
+#include "trunnion/positions/table_plan.hpp"
 #include "trunnion/turntable/rig.hpp"
 
 namespace trunnion::io {
@@ -55,6 +56,7 @@ struct RunFile {
   std::array<EntryVerdict, kEntries> limits;
   LcmChannels channels;
   ColumnMap columns;
+  PlanRequest plan;  ///< what a live calibration asks of each mount
   std::vector<RecordingFiles> recordings;
 };
 

@@ -9,8 +9,8 @@
 
 namespace trunnion {
 
-/// Counts over one channel. A number behind the expected one, or far ahead of it, is late until the next one follows it:
-/// then the publisher has begun again, or, when the old numbers go on between them, there are two.
+/// Counts over one channel. A number behind the expected one, or far ahead of it, is late until the next one follows
+/// it: then the publisher has begun again, or, when the old numbers go on between them, there are two.
 class SequenceWatch {
  public:
   static constexpr std::int64_t kLongestGap = 10000000;  ///< samples; beyond it is another count

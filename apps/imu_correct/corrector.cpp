@@ -1,0 +1,156 @@
+// SPDX-FileCopyrightText: 2026 the trunnion authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "corrector.hpp"
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "trunnion/core/error.hpp"
+#include "trunnion/error_model/flash_block.hpp"
+#include "trunnion/io/calibration_file.hpp"
+#include "trunnion/io/fault.hpp"
+#include "trunnion/io/sensor_sheet.hpp"
+#include "trunnion/io/whole_file.hpp"
+
+namespace trunnion::app {
+namespace {
+
+constexpr std::int32_t kNoTemperature = std::numeric_limits<std::int32_t>::min();
+
+bool is_block(const std::string& path) { return path.size() > 4 && path.compare(path.size() - 4, 4, ".bin") == 0; }
+
+InertialSample<double> wide(const InertialSample<float>& s) { return {s.w.cast<double>(), s.f.cast<double>()}; }
+InertialSample<float> narrow(const InertialSample<double>& s) { return {s.w.cast<float>(), s.f.cast<float>()}; }
+
+}  // namespace
+
+Corrector::Corrector(const CorrectorOptions& options) {
+  UnitScale<double> scale;
+  if (!options.sheet.empty()) scale = io::read_sensor_sheet(options.sheet).counts;
+  int fraction = options.fraction;
+  if (is_block(options.calibration)) {
+    read_block(options);
+    if (integers_) fraction = integers_->shift - 2;
+  } else {
+    const InertialUnit<double> unit =
+        io::unit_of(io::read_calibration_file(options.calibration), options.calibration, options.recording);
+    thermal_ = !unit.thermal.is_zero();
+    si_.emplace(unit);
+    if (!options.sheet.empty() && options.in_floating_point) {
+      counts_.emplace(unit, scale);
+    } else if (!options.sheet.empty()) {
+      const auto made = count_calibration(unit, scale, options.bits, options.fraction);
+      if (!made.ok()) {
+        throw io::input_error(
+            options.calibration, 0, "",
+            "does not fit the integers of " + std::to_string(options.bits) +
+                " bits (imu_calibrate export says why): --float corrects raw counts in floating point");
+      }
+      integers_ = std::make_unique<CountCoefficients>(made.value().coefficients);
+    }
+  }
+  gyro_out_ = 1.0 / (scale.gyro.scale * std::ldexp(1.0, fraction));
+  accel_out_ = 1.0 / (scale.accel.scale * std::ldexp(1.0, fraction));
+}
+
+void Corrector::read_block(const CorrectorOptions& options) {
+  const std::string bytes = io::read_whole(options.calibration, sizeof(FlashBlock));
+  alignas(8) unsigned char memory[sizeof(FlashBlock)] = {};
+  std::memcpy(memory, bytes.data(), std::min(bytes.size(), sizeof memory));
+  const auto read = read_flash_block(memory, bytes.size());
+  if (!read.ok()) throw io::input_error(options.calibration, 0, "", "is no whole block of this version");
+  const FlashBlock& block = *read.value();
+  thermal_ = true;
+  if (block.has_counts == 0) {
+    si_float_.emplace(block.unit);
+    return;
+  }
+  if (options.sheet.empty())
+    throw io::input_error(options.calibration, 0, "", "is for raw counts: --sheet says what one is");
+  if (block.has_counts == 1 && !options.in_floating_point) {
+    integers_ = std::make_unique<CountCoefficients>(block.counts);
+  } else {
+    counts_float_.emplace(block.unit);
+  }
+}
+
+const char* Corrector::path() const { return integers_ ? "integers" : counts_ || si_ ? "double" : "float"; }
+
+InertialSample<double> Corrector::correct(const InertialSample<double>& reading, double temperature) const {
+  const bool warm = thermal_ && std::isfinite(temperature);
+  if (si_) return warm ? si_->correct(reading, temperature) : si_->correct(reading);
+  return wide(warm ? si_float_->correct(narrow(reading), static_cast<float>(temperature))
+                   : si_float_->correct(narrow(reading)));
+}
+
+InertialSample<double> Corrector::correct(const io::ImuCounts& raw) const {
+  const bool warm = thermal_ && raw.temperature != kNoTemperature;
+  if (integers_) {
+    CountCorrection correction(*integers_);
+    if (raw.temperature != kNoTemperature) correction.set_temperature(raw.temperature);
+    const UnitOutput<std::int32_t> out = correction.correct_saturated(raw.counts);
+    return {Vec3<double>(out[0], out[1], out[2]) * gyro_out_, Vec3<double>(out[3], out[4], out[5]) * accel_out_};
+  }
+  const auto& y = raw.counts;
+  const InertialSample<double> reading{Vec3<double>(y[0], y[1], y[2]), Vec3<double>(y[3], y[4], y[5])};
+  const double temperature = raw.temperature / 256.0;
+  if (counts_) return warm ? counts_->correct(reading, temperature) : counts_->correct(reading);
+  return wide(warm ? counts_float_->correct(narrow(reading), static_cast<float>(temperature))
+                   : counts_float_->correct(narrow(reading)));
+}
+
+CorrectedMessages::CorrectedMessages(const std::string& source, const io::LcmChannels& channels)
+    : decoder_(source, taken_, channels), mapped_(channels.imu.map != nullptr) {}
+
+const std::string* CorrectedMessages::correct(const io::LcmEvent& event, const Corrector& corrector) {
+  why_.clear();
+  if (!mapped_) {
+    if (const auto raw = io::decode_imu_counts(event.data)) {
+      if (!corrector.takes_counts()) {
+        why_ = "raw counts, and no --sheet says what one is";
+        ++damaged_;
+        return nullptr;
+      }
+      sequence_.add(raw->sequence);
+      ++samples_;
+      io::encode_imu(
+          raw->utime, raw->sequence, corrector.correct(*raw), message_,
+          raw->temperature == kNoTemperature ? std::numeric_limits<double>::quiet_NaN() : raw->temperature / 256.0);
+      return &message_;
+    }
+  }
+  taken_.stamps.clear();
+  taken_.values.clear();
+  const long long damaged = decoder_.damaged().records;
+  try {
+    decoder_.imu(event);
+  } catch (const Error& e) {
+    taken_.values.clear();
+    why_ = e.what();
+  }
+  if (decoder_.damaged().records > damaged) {
+    why_ = decoder_.first_fault();
+    taken_.values.clear();
+  }
+  if (!taken_.values.empty() && !corrector.takes_si()) why_ = "readings in SI, and the block is for raw counts";
+  if (!why_.empty()) ++damaged_;
+  if (taken_.values.empty() || !why_.empty()) return nullptr;
+  const double temperature = io::temperature_of(event.data);
+  for (InertialSample<double>& value : taken_.values) value = corrector.correct(value, temperature);
+  const long long first = samples_;
+  samples_ += static_cast<long long>(taken_.values.size());
+  if (!mapped_) {
+    sequence_ = decoder_.imu_sequence();
+    message_.assign(event.data);  // stamps, sequence and temperature stay
+    io::replace_samples(taken_.values, message_);
+  } else if (taken_.values.size() == 1) {
+    io::encode_imu(taken_.stamps.front(), first, taken_.values.front(), message_);
+  } else {
+    io::encode_imu_batch(first, taken_.stamps, taken_.values, message_);
+  }
+  return &message_;
+}
+
+}  // namespace trunnion::app

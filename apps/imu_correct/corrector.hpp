@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: 2026 the trunnion authors
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Messages in, corrected messages out, by the code that runs in firmware.
+
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "trunnion/error_model/count_correction.hpp"
+#include "trunnion/error_model/inertial_unit.hpp"
+#include "trunnion/io/lcm_recording.hpp"
+
+namespace trunnion::app {
+
+struct CorrectorOptions {
+  std::string calibration;  ///< a calibration file, or the block of `imu_calibrate export --block`
+  std::string sheet;        ///< what a raw count is; empty: none are expected
+  int recording = 0;        ///< whose turn-on bias; 0: the mean
+  int bits = 16;
+  int fraction = 6;
+  bool in_floating_point = false;  ///< raw counts too
+};
+
+/// One calibration, ready to correct. Not changed: a new file makes a new one.
+class Corrector {
+ public:
+  /// @throws Error (input) for files that cannot be read or do not fit together
+  explicit Corrector(const CorrectorOptions& options);
+
+  /// @param temperature [degC]; not a number where it is not known: the terms of temperature are left out
+  [[nodiscard]] InertialSample<double> correct(const InertialSample<double>& reading, double temperature) const;
+  /// Raw counts, in integers where the calibration allows it.
+  [[nodiscard]] InertialSample<double> correct(const io::ImuCounts& raw) const;
+
+  [[nodiscard]] bool takes_si() const { return si_.has_value() || si_float_.has_value(); }
+  [[nodiscard]] bool takes_counts() const { return integers_ || counts_.has_value() || counts_float_.has_value(); }
+  /// For messages: how raw counts are corrected.
+  [[nodiscard]] const char* path() const;
+
+ private:
+  void read_block(const CorrectorOptions& options);
+
+  std::optional<UnitCorrection<double>> si_;
+  std::optional<UnitCorrection<float>> si_float_;  // of a block
+  std::optional<UnitCorrection<double>> counts_;
+  std::optional<UnitCorrection<float>> counts_float_;
+  std::unique_ptr<CountCoefficients> integers_;
+  double gyro_out_ = 1.0;  // SI of a count out
+  double accel_out_ = 1.0;
+  bool thermal_ = false;
+};
+
+/// Messages of one channel, corrected.
+class CorrectedMessages {
+ public:
+  /// @param source for messages
+  CorrectedMessages(const std::string& source, const io::LcmChannels& channels);
+
+  /// @return the corrected message; nothing when it could not be decoded: why() says it
+  const std::string* correct(const io::LcmEvent& event, const Corrector& corrector);
+
+  [[nodiscard]] const std::string& why() const { return why_; }
+  [[nodiscard]] long long samples() const { return samples_; }
+  [[nodiscard]] long long damaged() const { return damaged_; }
+  [[nodiscard]] const SequenceWatch& sequence() const { return mapped_ ? decoder_.imu_sequence() : sequence_; }
+
+ private:
+  class Samples final : public SampleSink {
+   public:
+    void imu(std::int64_t utime, const InertialSample<double>& sample) override {
+      stamps.push_back(utime);
+      values.push_back(sample);
+    }
+    void encoder(std::int64_t, double, double) override {}
+    std::vector<std::int64_t> stamps;
+    std::vector<InertialSample<double>> values;
+  };
+
+  Samples taken_;
+  io::LcmDecoder decoder_;
+  bool mapped_;
+  SequenceWatch sequence_;
+  std::string message_;
+  std::string why_;
+  long long samples_ = 0;
+  long long damaged_ = 0;
+};
+
+}  // namespace trunnion::app

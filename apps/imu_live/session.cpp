@@ -1,0 +1,343 @@
+// SPDX-FileCopyrightText: 2026 the trunnion authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "session.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include "../terminal.hpp"
+#include "trunnion/core/error.hpp"
+
+namespace trunnion::app {
+namespace {
+
+using std::chrono::duration;
+using std::chrono::milliseconds;
+
+constexpr auto kWatchEvery = milliseconds(50);
+constexpr auto kShowEvery = milliseconds(500);
+constexpr auto kEstimateEvery = milliseconds(500);
+constexpr double kSilent = 1.0;         // s
+constexpr double kWorthKeeping = 10.0;  // s of a recording that was interrupted
+
+calibration::CompressOptions compress_options(const io::RunFile& run, const io::RecordingFiles& files) {
+  calibration::CompressOptions options;
+  options.name = files.name();
+  options.period = run.sheet.rate_hz > 0.0 ? 1.0 / run.sheet.rate_hz : 0.0;
+  options.range = {run.sheet.gyro_range, run.sheet.accel_range};
+  return options;
+}
+
+}  // namespace
+
+Session::Session(const io::RunFile& run, const io::RigFile& rig, const std::vector<std::string>& mounts,
+                 bus::Connection& connection, SharedState& state, const SessionOptions& options)
+    : run_(run),
+      rig_(rig),
+      mounts_(mounts),
+      connection_(connection),
+      state_(state),
+      options_(options),
+      estimator_(run, rig, mounts, state),
+      started_(Clock::now()),
+      watched_(started_),
+      shown_(started_),
+      estimated_(started_) {
+  for (const io::RecordingFiles& files : run.recordings) {
+    if (files.lcm.empty() || files.mount.empty())
+      throw Error(ExitCode::kUsage, run.path +
+                                        ": a live calibration records LCM logs on a rig: each recording needs a "
+                                        "mount and a log");
+  }
+  state_.change([&](LiveState& s) {
+    s.recordings = static_cast<int>(run_.recordings.size());
+    s.model = run_.sheet.model;
+  });
+  connection_.subscribe(run_.channels.imu.name, &Session::on_imu, *this);
+  if (run_.channels.encoder.name == run_.channels.imu.name)
+    throw Error(ExitCode::kUsage, run.path + ": the unit and the encoders have the same channel");
+  connection_.subscribe(run_.channels.encoder.name, &Session::on_encoder, *this);
+  load_or_wait();
+}
+
+int Session::mount_of(std::size_t index) const {
+  return static_cast<int>(std::find(mounts_.begin(), mounts_.end(), run_.recordings[index].mount) - mounts_.begin());
+}
+
+/// Goes over the recordings that are there, up to the one that is to be recorded next.
+void Session::load_or_wait() {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  while (recordings_.size() < run_.recordings.size()) {
+    const std::size_t index = recordings_.size();
+    const io::RecordingFiles& files = run_.recordings[index];
+    state_.change([&](LiveState& s) {
+      s.recording = static_cast<int>(index) + 1;
+      s.mount = files.mount;
+    });
+    if (!fs::exists(files.lcm, error)) {
+      const std::string part = io::LcmJournal::part_of(files.lcm);
+      if (fs::exists(part, error) && fs::file_size(part, error) > 0) return start();
+      state_.change([&](LiveState& s) {
+        s.phase = Phase::kWaiting;
+        s.guidance = options_.unattended ? "waiting for the unit in " + files.mount
+                                         : "change to " + files.mount + ", press Enter";
+      });
+      return;
+    }
+    load(index);
+  }
+}
+
+/// One that was recorded in an earlier session.
+void Session::load(std::size_t index) {
+  const io::RecordingFiles& files = run_.recordings[index];
+  calibration::Compressor compressor(compress_options(run_, files));
+  const io::LcmLosses losses = io::read_recording(run_, files, compressor, inputs_.digests);
+  inputs_.losses.records += losses.records;
+  inputs_.losses.bytes += losses.bytes;
+  inputs_.losses.samples += losses.samples;
+  recordings_.push_back({compressor.finish(), mount_of(index)});
+  estimator_.begin(mount_of(index));
+  estimator_.add(recordings_.back().data);
+  add_notice(state_, files.lcm + " is recorded already and is used; move it away to record " + files.mount + " again");
+}
+
+void Session::fresh_recording() {
+  const io::RecordingFiles& files = run_.recordings[recordings_.size()];
+  compressor_ = std::make_unique<calibration::Compressor>(compress_options(run_, files));
+  decoder_.emplace(connection_.url(), message_, run_.channels);
+  handed_over_ = 0;
+  strays_ = restarts_ = 0;
+  said_damage_ = said_saturation_ = said_two_ = said_loss_ = false;
+  arrived_ = false;
+}
+
+/// Begins the recording that is next, or takes up what is there of it.
+void Session::start() {
+  const std::size_t index = recordings_.size();
+  const io::RecordingFiles& files = run_.recordings[index];
+  fresh_recording();
+  estimator_.begin(mount_of(index));
+  recording_ = true;
+  journal_ = std::make_unique<io::LcmJournal>(files.lcm, [&](const io::LcmEvent& event) {
+    if (event.channel == run_.channels.imu.name) take(event, true);
+    if (event.channel == run_.channels.encoder.name) take(event, false);
+  });
+  imu_.any = encoder_.any = imu_.silent = encoder_.silent = false;
+  state_.change([](LiveState& s) {
+    s.phase = Phase::kRecording;
+    s.enough = false;
+  });
+  if (journal_->recovered() > 0) {
+    add_notice(state_, "going on with " + files.mount + ": " + std::to_string(journal_->recovered()) +
+                           " messages are there already");
+    hand_over();
+  } else {
+    add_notice(state_, "recording " + files.mount + " into " + files.lcm);
+  }
+}
+
+void Session::on_message(const io::LcmEvent& event, bool imu) {
+  Arrivals& arrivals = imu ? imu_ : encoder_;
+  arrivals.last = Clock::now();
+  arrivals.any = true;
+  if (!recording_ && recordings_.size() < run_.recordings.size() && options_.unattended) start();
+  if (!recording_) {
+    ++arrivals.count;
+    return;
+  }
+  arrived_ = true;
+  take(event, imu);
+}
+
+/// Decodes a message, journals it when it is good, and gives its samples to the windows.
+void Session::take(const io::LcmEvent& event, bool imu) {
+  message_.samples.clear();
+  message_.angles.clear();
+  std::string fault;
+  const long long damaged = decoder_->damaged().records;
+  try {
+    imu ? decoder_->imu(event) : decoder_->encoder(event);
+    if (decoder_->damaged().records > damaged) fault = decoder_->first_fault();
+  } catch (const Error& e) {  // a number that is none: live, one message is left out
+    fault = e.what();
+    message_.samples.clear();
+    message_.angles.clear();
+  }
+  if (!fault.empty()) {
+    state_.change([&](LiveState& s) { ++(imu ? s.imu : s.encoder).damaged; });
+    say_once(said_damage_, "a message is left out: " + fault);
+  }
+  if (message_.samples.empty() && message_.angles.empty()) return;
+  (imu ? imu_ : encoder_).count += static_cast<long long>(message_.samples.size() + message_.angles.size());
+  const bool period_known = compressor_->figures().period > 0.0;
+  try {
+    for (const auto& [utime, sample] : message_.samples) compressor_->imu(utime, sample);
+    for (const auto& [utime, angle] : message_.angles) compressor_->encoder(utime, angle[0], angle[1]);
+  } catch (const Error& e) {
+    if (!period_known || !journal_) throw;  // the stream itself, or what is there of it, is not what the run says
+    return begin_again(e.what());
+  }
+  if (journal_) journal_->write(event.timestamp, event.channel, event.data);
+}
+
+/// The recording cannot go on: it is kept aside, and begins anew.
+void Session::begin_again(const std::string& why) {
+  const io::RecordingFiles& files = run_.recordings[recordings_.size()];
+  std::string kept;
+  if (journal_) {
+    kept = journal_->set_aside();
+    std::error_code error;
+    if (compressor_->elapsed() < kWorthKeeping && std::filesystem::remove(kept, error)) kept.clear();
+  }
+  add_notice(state_, why + "; the recording of " + files.mount + " begins again" +
+                         (kept.empty() ? "" : ", what there was is kept as " + kept));
+  fresh_recording();
+  estimator_.abandon();
+  journal_ = std::make_unique<io::LcmJournal>(files.lcm, nullptr);
+}
+
+/// What came since the last time, to the estimator.
+void Session::hand_over() {
+  calibration::CompressedRecording part = compressor_->so_far(handed_over_);
+  handed_over_ += part.windows.size();
+  estimator_.add(std::move(part));
+  estimated_ = Clock::now();
+}
+
+void Session::finish_recording() {
+  const std::size_t index = recordings_.size();
+  const io::RecordingFiles& files = run_.recordings[index];
+  calibration::TableRecording recording;
+  recording.mount = mount_of(index);
+  try {
+    recording.data = compressor_->finish();
+  } catch (const Error& e) {
+    if (options_.unattended) throw;
+    begin_again(e.what());
+    return;
+  }
+  const std::string digest = journal_->finish();
+  if (!digest.empty()) {
+    inputs_.digests.emplace_back(files.lcm, digest);
+  } else {
+    say_once(said_journal_, "the recording is lost: " + journal_->failure() + "; the calibration goes on without it");
+  }
+  journal_.reset();
+  if (decoder_->imu_sequence().numbered()) inputs_.losses.samples += decoder_->imu_sequence().lost();
+  calibration::CompressedRecording part;
+  part.name = recording.data.name;
+  part.figures = recording.data.figures;
+  part.course = recording.data.course;
+  part.windows.assign(recording.data.windows.begin() + static_cast<std::ptrdiff_t>(handed_over_),
+                      recording.data.windows.end());
+  estimator_.add(std::move(part));
+  show_figures();
+  add_notice(state_, files.mount + " is recorded: " + std::to_string(recording.data.figures.samples) + " samples, " +
+                         std::to_string(decoder_->imu_sequence().numbered() ? decoder_->imu_sequence().lost() : 0) +
+                         " lost on the way, " + std::to_string(recording.data.figures.missing) + " holes in time");
+  recording_ = false;
+  recordings_.push_back(std::move(recording));
+  imu_.any = encoder_.any = false;
+  load_or_wait();
+}
+
+void Session::say_once(bool& said, const std::string& text) {
+  if (!said) add_notice(state_, text);
+  said = true;
+}
+
+void Session::watch_channel(const char* name, Arrivals& arrivals, double now_silent) {
+  if (arrivals.any && now_silent > kSilent && !arrivals.silent) {
+    arrivals.silent = true;
+    add_notice(state_, std::string("lost channel: no message of ") + name + " for " + figure(now_silent, 2) + " s");
+  } else if (arrivals.silent && now_silent < kSilent) {
+    arrivals.silent = false;
+    add_notice(state_, std::string("a message of ") + name + " again");
+  }
+}
+
+void Session::show_figures() {
+  const auto now = Clock::now();
+  const double past = duration<double>(now - shown_).count();
+  shown_ = now;
+  const auto show = [&](Arrivals& arrivals, const SequenceWatch* sequence, LiveState::Channel& into) {
+    if (past > 0.1) arrivals.rate = static_cast<double>(arrivals.count) / past;
+    arrivals.count = 0;
+    into.rate_hz = arrivals.rate;
+    into.silent_s = arrivals.any ? duration<double>(now - arrivals.last).count() : 0.0;
+    if (sequence == nullptr) return;
+    into.samples = sequence->received();
+    into.lost = sequence->numbered() ? sequence->lost() : 0;
+    into.late = sequence->late();
+  };
+  state_.change([&](LiveState& s) {
+    show(imu_, decoder_ ? &decoder_->imu_sequence() : nullptr, s.imu);
+    show(encoder_, decoder_ ? &decoder_->encoder_sequence() : nullptr, s.encoder);
+    if (!compressor_) return;
+    s.imu.samples = decoder_->samples();
+    s.encoder.samples = decoder_->encoders();
+    s.duration = compressor_->elapsed();
+    s.saturated = compressor_->figures().saturated;
+  });
+}
+
+/// What is noticed between messages.
+void Session::watch() {
+  const auto now = Clock::now();
+  const auto silent = [&](const Arrivals& a) { return a.any ? duration<double>(now - a.last).count() : 0.0; };
+  if (journal_) {
+    journal_->flush();
+    if (!journal_->failure().empty())
+      say_once(said_journal_, "nothing more is recorded: " + journal_->failure() + "; the calibration goes on");
+  }
+  if (recording_) {
+    watch_channel("the unit", imu_, silent(imu_));
+    watch_channel("the encoders", encoder_, silent(encoder_));
+    const long long strays = compressor_->strays();
+    if (strays > strays_) {
+      add_notice(state_,
+                 "a clock jumped: " + std::to_string(strays - strays_) + " stamps out of their order are left out");
+      strays_ = strays;
+    }
+    const SequenceWatch& sequence = decoder_->imu_sequence();
+    if (sequence.restarts() > restarts_) {
+      restarts_ = sequence.restarts();
+      add_notice(state_,
+                 "the unit's publisher began again: if the unit was switched off, its turn-on bias is another; then "
+                 "end this recording and start it anew");
+    }
+    if (sequence.two_publishers()) say_once(said_two_, "two publishers on channel " + run_.channels.imu.name);
+    if (sequence.numbered() && sequence.lost() > 0)
+      say_once(said_loss_, std::to_string(sequence.lost()) + " samples were lost on the way, and counting");
+    if (compressor_->figures().saturated > 0)
+      say_once(said_saturation_, "saturated: samples at or past the range of the sheet; turn slower");
+    if (now - estimated_ > kEstimateEvery && !estimator_.busy()) hand_over();
+  }
+  if (now - shown_ > kShowEvery) show_figures();
+  int clicks = clicks_.exchange(0);
+  if (options_.unattended && recording_ && arrived_ && imu_.any && encoder_.any && silent(imu_) > options_.silence &&
+      silent(encoder_) > options_.silence)
+    clicks = 1;
+  if (clicks == 0) return;
+  if (recording_) {
+    finish_recording();
+  } else {
+    start();
+  }
+}
+
+bool Session::step() {
+  if (recordings_.size() == run_.recordings.size()) return false;
+  connection_.handle(20);
+  const auto now = Clock::now();
+  if (now - watched_ < kWatchEvery) return true;
+  watched_ = now;
+  watch();
+  return recordings_.size() < run_.recordings.size();
+}
+
+}  // namespace trunnion::app

@@ -1,0 +1,128 @@
+// SPDX-FileCopyrightText: 2026 the trunnion authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <limits>
+#include <regex>
+#include <set>
+
+#include "../terminal.hpp"
+#include "trunnion/bus/replay.hpp"
+#include "trunnion/core/error.hpp"
+#include "trunnion/io/fault.hpp"
+
+namespace trunnion::app {
+namespace {
+
+volatile std::sig_atomic_t interrupted = 0;
+void on_signal(int) { interrupted = 1; }
+
+struct Options {
+  std::string log;
+  std::string url;
+  double speed = 1.0;
+  std::string pattern;
+  std::vector<std::string> channels;
+  double start = 0.0;
+  double end = std::numeric_limits<double>::infinity();
+  bool lossless = false;
+  bool verbose = false;
+};
+
+ExitCode replay(const Options& o) {
+  std::regex pattern;
+  try {
+    pattern = std::regex(o.pattern, std::regex::ECMAScript | std::regex::optimize);
+  } catch (const std::regex_error& e) {
+    throw Error(ExitCode::kUsage, "--regexp '" + o.pattern + "': " + e.what());
+  }
+  io::LcmLogReader log(o.log);
+  bus::Connection connection(o.url);
+  if (o.lossless && !connection.lossless())
+    throw Error(ExitCode::kUsage,
+                connection.url() + ": drops what subscribers are too slow for; --lossless needs tcpq://");
+  bus::ReplayOptions options;
+  options.speed = o.lossless ? 0.0 : o.speed;
+  options.start = o.start;
+  options.end = o.end;
+  const std::set<std::string, std::less<>> names(o.channels.begin(), o.channels.end());
+  if (!names.empty() || !o.pattern.empty()) {
+    options.chosen = [&](std::string_view channel) {
+      return (names.empty() || names.find(channel) != names.end()) &&
+             (o.pattern.empty() || std::regex_match(channel.begin(), channel.end(), pattern));
+    };
+  }
+  ProgressLine progress;
+  long long messages = 0;
+  options.published = [&](const io::LcmEvent& event) {
+    if (o.verbose) {
+      std::printf("%lld %s %zu\n", static_cast<long long>(event.timestamp),
+                  io::printable(std::string(event.channel)).c_str(), event.data.size());
+    }
+    if (++messages % 256 == 0)
+      progress.show("replayed " + std::to_string(100 * event.byte / log.size()) + " %, " + std::to_string(messages) +
+                    " messages");
+    return interrupted == 0;
+  };
+  const auto begin = std::chrono::steady_clock::now();
+  const bus::ReplayFigures figures = bus::replay(log, connection, options);
+  const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  std::fprintf(stderr, "%s: %lld messages, %lld bytes, %.3f s of log in %.3f s, at most %.3f ms late", o.log.c_str(),
+               figures.messages, figures.bytes, figures.duration, took, 1e3 * figures.latest);
+  if (log.lost_bytes() > 0)
+    std::fprintf(stderr, "; %lld damaged records, %lld bytes passed over", log.lost_records(), log.lost_bytes());
+  std::fprintf(stderr, "\n");
+  if (interrupted != 0) return ExitCode::kInterrupted;
+  if (figures.messages == 0) throw io::input_error(o.log, 0, "", "has no message that was chosen");
+  return ExitCode::kDone;
+}
+
+}  // namespace
+
+ExitCode run_replay(int argc, char** argv) {
+  CLI::App app("Plays an LCM log back onto a bus, at the pace at which it was recorded.", "imu_replay");
+  app.set_version_flag("--version", tool_name());
+  Options o;
+  app.add_option("log", o.log, "LCM log")->required();
+  app.add_option("-l,--lcm-url", o.url, "Bus; default LCM_DEFAULT_URL, or LCM's own");
+  app.add_option("-s,--speed", o.speed, "Times the recorded pace; 0 or less: without pauses")->capture_default_str();
+  app.add_option("-e,--regexp", o.pattern, "Only channels that this regular expression matches as a whole");
+  app.add_option("-c,--channel", o.channels, "Only this channel; may be given again");
+  app.add_option("--start", o.start, "Seconds after the first event to begin at")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--end", o.end, "Seconds after the first event to end at")->check(CLI::NonNegativeNumber);
+  app.add_flag("--lossless", o.lossless, "As fast as the subscribers keep up: over tcpq, which waits for them");
+  app.add_flag("-v,--verbose", o.verbose, "Print time, channel and size of each message");
+  app.footer("Example:\n  imu_replay position_1.lcm --speed 4 --channel IMU --channel ENCODER");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? ExitCode::kDone : ExitCode::kUsage;
+  }
+  std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
+  try {
+    return replay(o);
+  } catch (const Error& e) {
+    std::fprintf(stderr, "imu_replay: %s\n", e.what());
+    return e.code();
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "imu_replay: a defect of ours, please report it: %s\n", e.what());
+    return ExitCode::kDefect;
+  }
+}
+
+}  // namespace trunnion::app
+
+int main(int argc, char** argv) {
+  try {
+    return static_cast<int>(trunnion::app::run_replay(argc, argv));
+  } catch (...) {
+    return static_cast<int>(trunnion::ExitCode::kDefect);
+  }
+}
