@@ -17,6 +17,7 @@ using std::chrono::duration;
 using std::chrono::milliseconds;
 
 constexpr auto kWatchEvery = milliseconds(50);
+constexpr auto kFlushEvery = milliseconds(10);
 constexpr auto kShowEvery = milliseconds(500);
 constexpr auto kEstimateEvery = milliseconds(500);
 constexpr double kSilent = 1.0;         // s
@@ -290,7 +291,6 @@ void Session::watch() {
   const auto now = Clock::now();
   const auto silent = [&](const Arrivals& a) { return a.any ? duration<double>(now - a.last).count() : 0.0; };
   if (journal_) {
-    journal_->flush();
     if (!journal_->failure().empty())
       say_once(said_journal_, "nothing more is recorded: " + journal_->failure() + "; the calibration goes on");
   }
@@ -334,6 +334,10 @@ bool Session::step() {
   if (recordings_.size() == run_.recordings.size()) return false;
   connection_.handle(20);
   const auto now = Clock::now();
+  if (journal_ && now - flushed_ > kFlushEvery) {
+    journal_->flush();
+    flushed_ = now;
+  }
   if (now - watched_ < kWatchEvery) return true;
   watched_ = now;
   watch();

@@ -109,6 +109,7 @@ class Session {
   Arrivals encoder_;
   Clock::time_point started_;
   Clock::time_point watched_;
+  Clock::time_point flushed_;
   Clock::time_point shown_;
   Clock::time_point estimated_;
   bool arrived_ = false;  // since the recording began or was taken up

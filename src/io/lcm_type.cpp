@@ -71,7 +71,8 @@ class Tokens {
     if (!take(token)) fail("should have '" + std::string(token) + "' before '" + printable(token_) + "'");
   }
   std::string name(const char* expected) {
-    if (at_end() || (std::isalpha(static_cast<unsigned char>(token_[0])) == 0 && token_[0] != '_'))
+    if (at_end()) return next(expected);
+    if (std::isalpha(static_cast<unsigned char>(token_[0])) == 0 && token_[0] != '_')
       fail(std::string("should have ") + expected + ", has '" + printable(token_) + "'");
     return next(expected);
   }

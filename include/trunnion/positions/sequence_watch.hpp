@@ -14,6 +14,7 @@ namespace trunnion {
 class SequenceWatch {
  public:
   static constexpr std::int64_t kLongestGap = 10000000;  ///< samples; beyond it is another count
+  static constexpr std::int64_t kRepeats = 256;          ///< samples behind: batches may overlap
 
   /// Takes a message of @p count samples whose first has number @p sequence.
   /// @return whether it is new; a repeat or a late one is not
@@ -33,6 +34,10 @@ class SequenceWatch {
       received_ += count;
       astray_ = false;
       return true;
+    }
+    if (ahead < 0 && ahead >= -kRepeats) {
+      late_ += count;
+      return false;
     }
     const bool follows = has_candidate_ && sequence == candidate_;
     const bool goes_on_between = follows && !astray_;
