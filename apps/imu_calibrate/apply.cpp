@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "../imu_correct/corrector.hpp"
 #include "../terminal.hpp"
 #include "command.hpp"
 #include "recordings.hpp"
@@ -45,40 +46,35 @@ class Corrected final : public SampleSink {
   long long samples_ = 0;
 };
 
-long long apply_to_log(const std::string& input, const io::LcmChannels& channels, const std::string& output,
-                       const UnitCorrection<double>& correction) {
-  io::LcmLogReader log(input);
+/// Message by message as imu_correct does live; other channels are copied.
+long long apply_to_log(const io::RecordingFiles& files, const io::LcmChannels& channels, const std::string& output,
+                       const Corrector& corrector) {
+  io::LcmLogReader log(files.lcm);
   io::LcmLogWriter out(output);
-  std::vector<InertialSample<double>> corrected;
-  Corrected sink(correction, [&](std::int64_t, const InertialSample<double>& sample) { corrected.push_back(sample); });
-  io::LcmDecoder decoder(input, sink, channels);
+  CorrectedMessages messages(files.lcm, channels);
   io::LcmEvent event;
-  std::string message;
+  std::string fault;
   while (log.next(event)) {
     if (event.channel != channels.imu.name) {
       out.write(event.timestamp, event.channel, event.data);
       continue;
     }
-    corrected.clear();
-    decoder.imu(event);
-    if (corrected.empty()) continue;  // damaged, and counted
-    message = event.data;             // stamps, sequence and temperature stay
-    if (!io::replace_samples(corrected, message))
-      throw io::input_error(input, 0, "channel " + channels.imu.name,
-                            "is not of type imu_t or imu_batch_t: apply cannot write it again");
-    out.write(event.timestamp, event.channel, message);
+    const std::string* const corrected = messages.correct(event, corrector);
+    if (corrected != nullptr) out.write(event.timestamp, event.channel, *corrected);
+    if (!messages.why().empty() && fault.empty()) fault = messages.why();
   }
-  decoder.finish();
-  if (sink.samples() == 0) {
-    throw io::input_error(input, 0, "", "no usable message on the IMU channel '" + channels.imu.name + "'");
+  messages.finish();
+  if (messages.samples() == 0) {
+    throw io::input_error(
+        files.lcm, 0, "",
+        "no usable message on the IMU channel '" + channels.imu.name + "'" + (fault.empty() ? "" : ": " + fault));
   }
   out.commit();
-  const long long records = log.lost_records() + decoder.damaged().records;
-  if (records > 0) {
+  const long long records = log.lost_records() + messages.damaged();
+  if (records > 0)
     std::fprintf(stderr, "%lld damaged records, %lld bytes passed over\n", records,
-                 log.lost_bytes() + decoder.damaged().bytes);
-  }
-  return sink.samples();
+                 log.lost_bytes() + messages.damaged_bytes());
+  return messages.samples();
 }
 
 /// Through the same reader as solve: columns and raw counts as the run file says.
@@ -100,11 +96,6 @@ long long apply_to_table(const Options& o, const io::RunFile& run, const io::Rec
 }
 
 void apply(const Options& o) {
-  const InertialUnit<double> unit = io::unit_of(io::read_calibration_file(o.calibration), o.calibration, o.recording);
-  if (!unit.thermal.is_zero()) {
-    std::fprintf(stderr, "%s: has temperature terms, which are not applied: recordings are read without temperature\n",
-                 o.calibration.c_str());
-  }
   io::RunFile run;
   io::RecordingFiles files;
   if (is_run_file(o.input)) {
@@ -128,9 +119,21 @@ void apply(const Options& o) {
   std::vector<std::string> sources = files_of(run);
   sources.insert(sources.end(), {o.input, o.calibration});
   keep_inputs(o.output, sources);
-  const UnitCorrection<double> correction(unit);
-  const long long samples =
-      table ? apply_to_table(o, run, files, correction) : apply_to_log(files.lcm, run.channels, o.output, correction);
+  long long samples = 0;
+  if (table) {
+    const InertialUnit<double> unit = io::unit_of(io::read_calibration_file(o.calibration), o.calibration, o.recording);
+    if (!unit.thermal.is_zero())
+      std::fprintf(stderr, "%s: has temperature terms, which are not applied: tables are read without temperature\n",
+                   o.calibration.c_str());
+    samples = apply_to_table(o, run, files, UnitCorrection<double>(unit));
+  } else {
+    CorrectorOptions options;
+    options.calibration = o.calibration;
+    options.sheet = run.sheet_path;
+    options.recording = o.recording;
+    options.in_floating_point = true;
+    samples = apply_to_log(files, run.channels, o.output, Corrector(options));
+  }
   std::printf("%s: %lld samples corrected\n", o.output.c_str(), samples);
 }
 

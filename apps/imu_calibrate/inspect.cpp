@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "../terminal.hpp"
+#include "channels.hpp"
 #include "command.hpp"
 #include "recordings.hpp"
 #include "trunnion/calibration/compress.hpp"
@@ -28,6 +28,7 @@ struct Options {
   std::string input;
   std::string format = "text";
   io::LcmChannels channels;
+  std::vector<std::string> lcm_types;
 };
 
 /// Stamps and ranges of one channel.
@@ -168,20 +169,10 @@ class InspectSink final : public SampleSink {
   calibration::SensorRange range_;
 };
 
-/// Every channel of a log and how many messages it has: shown when the channels asked for are not there.
-void count_channels(const std::string& path, Json& json) {
-  io::LcmLogReader log(path);
-  io::LcmEvent event;
-  std::map<std::string, long long> count;
-  while (log.next(event)) ++count[std::string(event.channel)];
-  for (const auto& [channel, messages] : count) json["channels"][channel] = messages;
-  json["lost"] = {{"records", log.lost_records()}, {"bytes", log.lost_bytes()}};
-}
-
-Json inspect_recording(const io::RunFile& run, const io::RecordingFiles& files) {
+Json inspect_recording(const io::RunFile& run, const io::RecordingFiles& files, const io::LcmTypes& types) {
   Json json = {{"file", files.name()}};
   if (!files.mount.empty()) json["mount"] = files.mount;
-  if (!files.lcm.empty()) count_channels(files.lcm, json);
+  if (!files.lcm.empty()) look_at_channels(files.lcm, types, json);
   InspectSink sink(files.name(), {run.sheet.gyro_range, run.sheet.accel_range});
   std::vector<std::pair<std::string, std::string>> digests;
   try {
@@ -215,13 +206,7 @@ void print_text(const Json& all) {
   for (const Json& one : all["recordings"]) {
     std::printf("%s%s\n", one["file"].get<std::string>().c_str(),
                 one.contains("mount") ? (", " + one["mount"].get<std::string>()).c_str() : "");
-    if (one.contains("channels")) {
-      std::printf("  channels:");
-      for (const auto& [channel, messages] : one["channels"].items())
-        std::printf(" %s (%lld)", io::printable(channel).c_str(), messages.get<long long>());
-      std::printf("; lost %lld records, %lld bytes\n", one["lost"]["records"].get<long long>(),
-                  one["lost"]["bytes"].get<long long>());
-    }
+    if (one.contains("channels")) print_channels(one);
     if (one.contains("imu")) print_channel("IMU", one["imu"]);
     if (one.contains("encoder")) print_channel("encoder", one["encoder"]);
     if (one.contains("refused"))
@@ -248,11 +233,13 @@ ExitCode inspect(const Options& o) {
     (is_table(o.input) ? files.imu : files.lcm) = o.input;
     run.recordings.push_back(files);
   }
+  io::LcmTypes types = *io::known_types();
+  for (const std::string& path : o.lcm_types) types.add(path);
   ProgressLine progress;
   Json all = {{"schema", "trunnion/inspect/1"}};
   for (const io::RecordingFiles& files : run.recordings) {
     progress.show("reading " + files.name());
-    all["recordings"].push_back(inspect_recording(run, files));
+    all["recordings"].push_back(inspect_recording(run, files, types));
   }
   if (o.format == "json") {
     std::printf("%s\n", all.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace).c_str());
@@ -276,6 +263,7 @@ void add_inspect(CLI::App& app, ExitCode& exit_code) {
       ->check(CLI::IsMember({"text", "json"}));
   command->add_option("--imu-channel", o->channels.imu.name, "Of a log")->capture_default_str();
   command->add_option("--encoder-channel", o->channels.encoder.name, "Of a log")->capture_default_str();
+  command->add_option("--lcm-types", o->lcm_types, "Definitions to know types by: a .lcm file, or a folder of them");
   command->footer("Example:\n  imu_calibrate inspect run.yaml");
   command->callback([o, &exit_code] { exit_code = inspect(*o); });
 }

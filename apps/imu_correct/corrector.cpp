@@ -109,8 +109,9 @@ const std::string* CorrectedMessages::correct(const io::LcmEvent& event, const C
   if (!mapped_) {
     if (const auto raw = io::decode_imu_counts(event.data)) {
       if (!corrector.takes_counts()) {
-        why_ = "raw counts, and no --sheet says what one is";
+        why_ = "raw counts, and no sheet says what one is";
         ++damaged_;
+        damaged_bytes_ += static_cast<long long>(event.data.size());
         return nullptr;
       }
       sequence_.add(raw->sequence);
@@ -135,7 +136,10 @@ const std::string* CorrectedMessages::correct(const io::LcmEvent& event, const C
     taken_.values.clear();
   }
   if (!taken_.values.empty() && !corrector.takes_si()) why_ = "readings in SI, and the block is for raw counts";
-  if (!why_.empty()) ++damaged_;
+  if (!why_.empty()) {
+    ++damaged_;
+    damaged_bytes_ += static_cast<long long>(event.data.size());
+  }
   if (taken_.values.empty() || !why_.empty()) return nullptr;
   const double temperature = io::temperature_of(event.data);
   for (InertialSample<double>& value : taken_.values) value = corrector.correct(value, temperature);

@@ -67,6 +67,9 @@ class CorrectedMessages {
   [[nodiscard]] const std::string& why() const { return why_; }
   [[nodiscard]] long long samples() const { return samples_; }
   [[nodiscard]] long long damaged() const { return damaged_; }
+  [[nodiscard]] long long damaged_bytes() const { return damaged_bytes_; }
+  /// Of a log, after the last message. @throws Error (input) as LcmDecoder::finish() does
+  void finish() const { decoder_.finish(); }
   [[nodiscard]] const SequenceWatch& sequence() const { return mapped_ ? decoder_.imu_sequence() : sequence_; }
 
  private:
@@ -89,6 +92,7 @@ class CorrectedMessages {
   std::string why_;
   long long samples_ = 0;
   long long damaged_ = 0;
+  long long damaged_bytes_ = 0;
 };
 
 }  // namespace trunnion::app

@@ -225,7 +225,7 @@ void Session::finish_recording() {
   if (!digest.empty()) {
     inputs_.digests.emplace_back(files.lcm, digest);
   } else {
-    say_once(said_journal_, "the recording is lost: " + journal_->failure() + "; the calibration goes on without it");
+    add_notice(state_, "the recording is lost: " + journal_->failure() + "; the calibration goes on without it");
   }
   journal_.reset();
   if (decoder_->imu_sequence().numbered()) inputs_.losses.samples += decoder_->imu_sequence().lost();

@@ -18,6 +18,8 @@
 namespace trunnion::bus {
 namespace {
 
+constexpr int kReceiveBuffer = 4 << 20;  // bytes
+
 /// LCM takes channel names for regular expressions.
 std::string literally(const std::string& channel) {
   std::string pattern;
@@ -39,6 +41,13 @@ void check_tcpq(const std::string& url) {
   if (!host.empty() && ::inet_pton(AF_INET, host.c_str(), &address) != 1)
     throw Error(ExitCode::kTransport,
                 url + ": '" + host + "' should be an address like 127.0.0.1: LCM does not look names up");
+}
+
+/// A burst waits in the kernel while this program is not scheduled: its own buffer of 200 kB is a moment's. The kernel
+/// gives what it allows of it.
+std::string with_buffer(const std::string& url) {
+  if (!has_provider(url, "udpm") || url.find("recv_buf_size") != std::string::npos) return url;
+  return url + (url.find('?') == std::string::npos ? "?" : "&") + "recv_buf_size=" + std::to_string(kReceiveBuffer);
 }
 
 }  // namespace
@@ -79,7 +88,7 @@ Connection::Connection(const std::string& url) : implementation_(std::make_uniqu
              : by_default != nullptr && *by_default != '\0' ? by_default
                                                             : "udpm://239.255.76.67:7667?ttl=0";
   if (has_provider(self.url, "tcpq")) check_tcpq(self.url);
-  self.lcm = lcm_create(self.url.c_str());
+  self.lcm = lcm_create(with_buffer(self.url).c_str());
   if (self.lcm == nullptr) {
     throw Error(ExitCode::kTransport,
                 self.url + ": no connection" +

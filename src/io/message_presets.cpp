@@ -11,6 +11,17 @@ namespace trunnion::io {
 namespace {
 
 constexpr std::string_view kDefinitions = R"(
+package trunnion_lcm;
+struct imu_t { int64_t utime, sequence; double angular_rate[3], specific_force[3], temperature; }
+struct imu_batch_t {
+  int64_t utime, sequence; int32_t num_samples; int64_t sample_utime[num_samples];
+  double gyro_x[num_samples], gyro_y[num_samples], gyro_z[num_samples];
+  double accel_x[num_samples], accel_y[num_samples], accel_z[num_samples]; double temperature;
+}
+struct imu_counts_t { int64_t utime, sequence; int32_t gyro[3], accel[3], temperature; }
+struct encoder_t { int64_t utime, sequence; int32_t num_axes; double angle[num_axes]; }
+struct index_t { int64_t utime, sequence; int32_t turns; }
+struct navigation_t { int64_t utime, sequence; double latitude, longitude, height, velocity[3], attitude[4]; }
 package bot_core;
 struct ins_t { int64_t utime, device_time; double gyro[3], mag[3], accel[3], quat[4], pressure, rel_alt; }
 struct kvh_raw_imu_t { int64_t utime, packet_count; double delta_rotation[3], linear_acceleration[3]; }
@@ -51,9 +62,14 @@ struct lcmt_iiwa_status {
 }
 )";
 
-std::vector<MessagePreset> make_presets() {
+std::shared_ptr<const LcmTypes> make_types() {
   const auto types = std::make_shared<LcmTypes>();
-  types->add_text(kDefinitions, "presets");
+  types->add_text(kDefinitions, "known types");
+  return types;
+}
+
+std::vector<MessagePreset> make_presets() {
+  const std::shared_ptr<const LcmTypes> types = known_types();
   std::vector<MessagePreset> presets;
   const auto add = [&](const char* type, const char* channel, bool is_imu) -> MessageMap& {
     presets.push_back({type, channel, is_imu, {}});
@@ -101,6 +117,11 @@ std::vector<MessagePreset> make_presets() {
 }
 
 }  // namespace
+
+std::shared_ptr<const LcmTypes> known_types() {
+  static const std::shared_ptr<const LcmTypes> types = make_types();
+  return types;
+}
 
 const std::vector<MessagePreset>& message_presets() {
   static const std::vector<MessagePreset> presets = make_presets();

@@ -79,6 +79,7 @@ TEST_F(LcmTypesTest, FingerprintsAreThoseOfLcmGen) {
   EXPECT_EQ(ours.fingerprint("trunnion_lcm.imu_batch_t"), kImuBatchFingerprint);
   EXPECT_EQ(ours.fingerprint("trunnion_lcm.imu_counts_t"), kImuCountsFingerprint);
   EXPECT_EQ(ours.fingerprint("trunnion_lcm.encoder_t"), kEncoderFingerprint);
+  for (const std::string& name : ours.names()) EXPECT_EQ(known_types()->fingerprint(name), ours.fingerprint(name));
   EXPECT_THAT(ours.with_fingerprint(kIndexFingerprint), ElementsAre("trunnion_lcm.index_t"));
 }
 

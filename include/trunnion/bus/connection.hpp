@@ -25,7 +25,8 @@ class Connection {
 
   using Handler = std::function<void(const io::LcmEvent&)>;
 
-  /// @param url "udpm://239.255.76.67:7667?ttl=0", ...; empty: LCM_DEFAULT_URL, or LCM's default
+  /// @param url "udpm://239.255.76.67:7667?ttl=0", ...; empty: LCM_DEFAULT_URL, or LCM's default. Where udpm's
+  /// recv_buf_size is not stated, 4 MB are asked for.
   /// @throws Error (transport) for an address that cannot be used
   explicit Connection(const std::string& url = "");
   Connection(const Connection&) = delete;

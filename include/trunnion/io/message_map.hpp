@@ -58,6 +58,9 @@ struct MessagePreset {
 
 const std::vector<MessagePreset>& message_presets();
 
+/// The definitions of package trunnion_lcm and of the presets.
+std::shared_ptr<const LcmTypes> known_types();
+
 /// @throws Error (input) for a name that no preset has, with the nearest
 const MessagePreset& message_preset(const std::string& name);
 
