@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the trunnion authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include <cstdio>
-#include <exception>
+#include <utility>
 
+#include "../program.hpp"
 #include "../terminal.hpp"
 #include "command.hpp"
 
@@ -26,31 +26,9 @@ ExitCode run_command(std::vector<std::string> arguments) {
   add_export(app, exit_code);
   add_compare(app, exit_code);
   add_demo(app, exit_code);
-  try {
-    std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());  // as CLI11 wants it
-    app.parse(reversed);
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? ExitCode::kDone : ExitCode::kUsage;
-  } catch (const Error& e) {
-    std::fprintf(stderr, "imu_calibrate: %s\n", e.what());
-    return e.code();
-  } catch (const std::exception& e) {
-    std::fprintf(stderr, "imu_calibrate: a defect of ours, please report it: %s\n", e.what());
-    return ExitCode::kDefect;
-  }
-  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-    std::fprintf(stderr, "imu_calibrate: cannot write the result to standard output\n");
-    return ExitCode::kInput;
-  }
-  return exit_code;
+  return run_program(app, std::move(arguments), [&] { return exit_code; });
 }
 
 }  // namespace trunnion::app
 
-int main(int argc, char** argv) {
-  try {
-    return static_cast<int>(trunnion::app::run_command({argv + 1, argv + argc}));
-  } catch (...) {
-    return static_cast<int>(trunnion::ExitCode::kDefect);
-  }
-}
+int main(int argc, char** argv) { return trunnion::app::main_of(argc, argv, trunnion::app::run_command); }

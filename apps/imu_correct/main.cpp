@@ -5,11 +5,10 @@
 
 #include <CLI/CLI.hpp>
 #include <chrono>
-#include <csignal>
 #include <cstdio>
-#include <exception>
 #include <memory>
 
+#include "../program.hpp"
 #include "../terminal.hpp"
 #include "corrector.hpp"
 #include "trunnion/bus/connection.hpp"
@@ -20,9 +19,6 @@ namespace trunnion::app {
 namespace {
 
 constexpr auto kLookEvery = std::chrono::milliseconds(200);
-
-volatile std::sig_atomic_t interrupted = 0;
-void on_signal(int) { interrupted = 1; }
 
 struct Options {
   CorrectorOptions corrector;
@@ -72,7 +68,7 @@ class Correct {
     std::fprintf(stderr, "%s: %s to %s, raw counts in %s\n", connection_.url().c_str(), channels_.imu.name.c_str(),
                  o_.out.c_str(), corrector_->takes_counts() ? corrector_->path() : "no way: there is no --sheet");
     auto looked = std::chrono::steady_clock::now();
-    while (interrupted == 0) {
+    while (!interrupted()) {
       connection_.handle(100);
       const auto now = std::chrono::steady_clock::now();
       if (now - looked < kLookEvery) continue;
@@ -123,7 +119,7 @@ class Correct {
 
 }  // namespace
 
-ExitCode run_correct(int argc, char** argv) {
+ExitCode run_correct(std::vector<std::string> arguments) {
   CLI::App app("Corrects a unit's messages as they come, with the code that runs in firmware.", "imu_correct");
   app.set_version_flag("--version", tool_name());
   Options o;
@@ -149,30 +145,12 @@ ExitCode run_correct(int argc, char** argv) {
                  "Use the turn-on bias of this recording, from 1; default the mean")
       ->check(CLI::Range(1, 1000));
   app.footer("Example:\n  imu_correct calibration.yaml --in IMU --out IMU_CORRECTED");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? ExitCode::kDone : ExitCode::kUsage;
-  }
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
-  try {
+  return run_program(app, std::move(arguments), [&] {
+    catch_interrupts();
     return Correct(o).run();
-  } catch (const Error& e) {
-    std::fprintf(stderr, "imu_correct: %s\n", e.what());
-    return e.code();
-  } catch (const std::exception& e) {
-    std::fprintf(stderr, "imu_correct: a defect of ours, please report it: %s\n", e.what());
-    return ExitCode::kDefect;
-  }
+  });
 }
 
 }  // namespace trunnion::app
 
-int main(int argc, char** argv) {
-  try {
-    return static_cast<int>(trunnion::app::run_correct(argc, argv));
-  } catch (...) {
-    return static_cast<int>(trunnion::ExitCode::kDefect);
-  }
-}
+int main(int argc, char** argv) { return trunnion::app::main_of(argc, argv, trunnion::app::run_correct); }

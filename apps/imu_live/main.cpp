@@ -6,12 +6,11 @@
 
 #include <CLI/CLI.hpp>
 #include <atomic>
-#include <csignal>
 #include <cstdio>
-#include <exception>
 #include <optional>
 
 #include "../imu_calibrate/result.hpp"
+#include "../program.hpp"
 #include "../terminal.hpp"
 #include "session.hpp"
 #include "trunnion/core/error.hpp"
@@ -26,9 +25,6 @@ class Page;
 
 namespace trunnion::app {
 namespace {
-
-volatile std::sig_atomic_t interrupted = 0;
-void on_signal(int) { interrupted = 1; }
 
 struct Options {
   std::string run;
@@ -104,7 +100,7 @@ ExitCode live(const Options& o, SharedState& state) {
   Words words(state);
   bool input = true;
   while (session.step()) {
-    if (interrupted != 0) {
+    if (interrupted()) {
       words.end();
       std::fprintf(stderr, "interrupted: start again with the same run file to go on\n");
       return ExitCode::kInterrupted;
@@ -140,7 +136,7 @@ ExitCode live(const Options& o, SharedState& state) {
 
 }  // namespace
 
-ExitCode run_live(int argc, char** argv) {
+ExitCode run_live(std::vector<std::string> arguments) {
   CLI::App app(
       "Calibrates a unit while the table turns it: says what to do next, shows every sigma, and ends with the "
       "calibration that `imu_calibrate solve` gives from the recordings.",
@@ -164,33 +160,13 @@ ExitCode run_live(int argc, char** argv) {
       "codes: "
       "0 done, within limits; 1 done, out of limits; 2 usage; 3 input; 4 numerics; 5 bus or port; 70 defect; 130 "
       "interrupted.");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? ExitCode::kDone : ExitCode::kUsage;
-  }
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
-  SharedState state;
-  try {
-    const ExitCode code = live(o, state);
-    if (std::fflush(stdout) != 0) throw Error(ExitCode::kInput, "cannot write the result to standard output");
-    return code;
-  } catch (const Error& e) {
-    std::fprintf(stderr, "imu_live: %s\n", e.what());
-    return e.code();
-  } catch (const std::exception& e) {
-    std::fprintf(stderr, "imu_live: a defect of ours, please report it: %s\n", e.what());
-    return ExitCode::kDefect;
-  }
+  return run_program(app, std::move(arguments), [&] {
+    catch_interrupts();
+    SharedState state;
+    return live(o, state);
+  });
 }
 
 }  // namespace trunnion::app
 
-int main(int argc, char** argv) {
-  try {
-    return static_cast<int>(trunnion::app::run_live(argc, argv));
-  } catch (...) {
-    return static_cast<int>(trunnion::ExitCode::kDefect);
-  }
-}
+int main(int argc, char** argv) { return trunnion::app::main_of(argc, argv, trunnion::app::run_live); }

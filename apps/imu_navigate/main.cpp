@@ -7,12 +7,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "../program.hpp"
 #include "../terminal.hpp"
 #include "output.hpp"
 #include "trunnion/core/error.hpp"
@@ -313,7 +313,7 @@ void add_options(CLI::App& app, Options& o) {
       ->check(CLI::IsMember({"text", "json"}));
 }
 
-ExitCode main_with(int argc, char** argv) {
+ExitCode run_navigate(std::vector<std::string> arguments) {
   CLI::App app("Navigates from the samples of an inertial unit: strapped down, on a turning platform, or on a wheel.",
                "imu_navigate");
   app.set_version_flag("--version", tool_name());
@@ -323,32 +323,13 @@ ExitCode main_with(int argc, char** argv) {
       "Exit codes: 0 done; 2 usage; 3 input; 4 numerics; 70 defect.");
   Options o;
   add_options(app, o);
-  try {
-    app.parse(argc, argv);
+  return run_program(app, std::move(arguments), [&] {
     run(app, o);
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? ExitCode::kDone : ExitCode::kUsage;
-  } catch (const Error& e) {
-    std::fprintf(stderr, "imu_navigate: %s\n", e.what());
-    return e.code();
-  } catch (const std::exception& e) {
-    std::fprintf(stderr, "imu_navigate: a defect of ours, please report it: %s\n", e.what());
-    return ExitCode::kDefect;
-  }
-  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-    std::fprintf(stderr, "imu_navigate: cannot write the result to standard output\n");
-    return ExitCode::kInput;
-  }
-  return ExitCode::kDone;
+    return ExitCode::kDone;
+  });
 }
 
 }  // namespace
 }  // namespace trunnion::app
 
-int main(int argc, char** argv) {
-  try {
-    return static_cast<int>(trunnion::app::main_with(argc, argv));
-  } catch (...) {
-    return static_cast<int>(trunnion::ExitCode::kDefect);
-  }
-}
+int main(int argc, char** argv) { return trunnion::app::main_of(argc, argv, trunnion::app::run_navigate); }

@@ -3,13 +3,12 @@
 
 #include <CLI/CLI.hpp>
 #include <chrono>
-#include <csignal>
 #include <cstdio>
-#include <exception>
 #include <limits>
 #include <regex>
 #include <set>
 
+#include "../program.hpp"
 #include "../terminal.hpp"
 #include "trunnion/bus/replay.hpp"
 #include "trunnion/core/error.hpp"
@@ -17,9 +16,6 @@
 
 namespace trunnion::app {
 namespace {
-
-volatile std::sig_atomic_t interrupted = 0;
-void on_signal(int) { interrupted = 1; }
 
 struct Options {
   std::string log;
@@ -66,7 +62,7 @@ ExitCode replay(const Options& o) {
     if (++messages % 256 == 0)
       progress.show("replayed " + std::to_string(100 * event.byte / log.size()) + " %, " + std::to_string(messages) +
                     " messages");
-    return interrupted == 0;
+    return !interrupted();
   };
   const auto begin = std::chrono::steady_clock::now();
   const bus::ReplayFigures figures = bus::replay(log, connection, options);
@@ -76,14 +72,14 @@ ExitCode replay(const Options& o) {
   if (log.lost_bytes() > 0)
     std::fprintf(stderr, "; %lld damaged records, %lld bytes passed over", log.lost_records(), log.lost_bytes());
   std::fprintf(stderr, "\n");
-  if (interrupted != 0) return ExitCode::kInterrupted;
+  if (interrupted()) return ExitCode::kInterrupted;
   if (figures.messages == 0) throw io::input_error(o.log, 0, "", "has no message that was chosen");
   return ExitCode::kDone;
 }
 
 }  // namespace
 
-ExitCode run_replay(int argc, char** argv) {
+ExitCode run_replay(std::vector<std::string> arguments) {
   CLI::App app("Plays an LCM log back onto a bus, at the pace at which it was recorded.", "imu_replay");
   app.set_version_flag("--version", tool_name());
   Options o;
@@ -99,30 +95,12 @@ ExitCode run_replay(int argc, char** argv) {
   app.add_flag("--lossless", o.lossless, "As fast as the subscribers keep up: over tcpq, which waits for them");
   app.add_flag("-v,--verbose", o.verbose, "Print time, channel and size of each message");
   app.footer("Example:\n  imu_replay position_1.lcm --speed 4 --channel IMU --channel ENCODER");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? ExitCode::kDone : ExitCode::kUsage;
-  }
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
-  try {
+  return run_program(app, std::move(arguments), [&] {
+    catch_interrupts();
     return replay(o);
-  } catch (const Error& e) {
-    std::fprintf(stderr, "imu_replay: %s\n", e.what());
-    return e.code();
-  } catch (const std::exception& e) {
-    std::fprintf(stderr, "imu_replay: a defect of ours, please report it: %s\n", e.what());
-    return ExitCode::kDefect;
-  }
+  });
 }
 
 }  // namespace trunnion::app
 
-int main(int argc, char** argv) {
-  try {
-    return static_cast<int>(trunnion::app::run_replay(argc, argv));
-  } catch (...) {
-    return static_cast<int>(trunnion::ExitCode::kDefect);
-  }
-}
+int main(int argc, char** argv) { return trunnion::app::main_of(argc, argv, trunnion::app::run_replay); }

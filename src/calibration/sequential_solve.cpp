@@ -9,6 +9,7 @@
 #include <cmath>
 #include <deque>
 #include <numeric>
+#include <optional>
 
 #include "table_problem.hpp"
 #include "trunnion/core/units.hpp"
@@ -106,7 +107,7 @@ struct SequentialSolve::State {
   const Site& site;
   TableSolveOptions options;
   std::vector<TableRecording> recordings;
-  std::vector<TableRecording> waiting;  // one that has too few windows yet
+  std::optional<TableRecording> waiting;  // has too few windows yet
   std::unique_ptr<TableProblem> problem;
   std::vector<RecordingModel::Linearisation> linearisations;
   CalibrationValues at;  // x_0
@@ -131,24 +132,23 @@ SequentialSolve::~SequentialSolve() = default;
 const RunningEstimate& SequentialSolve::estimate() const { return state_->estimate; }
 
 void SequentialSolve::begin(int mount) {
-  state_->waiting.clear();
-  TableRecording recording;
-  recording.mount = mount;
-  state_->waiting.push_back(std::move(recording));
+  state_->waiting.emplace();
+  state_->waiting->mount = mount;
 }
 
 void SequentialSolve::abandon() {
   State& s = *state_;
   s.linearisations.clear();
   s.problem.reset();
-  if (s.waiting.empty()) s.recordings.pop_back();
-  s.waiting.clear();
+  if (!s.waiting && !s.recordings.empty()) s.recordings.pop_back();
+  s.waiting.reset();
 }
 
 const RunningEstimate& SequentialSolve::update(CompressedRecording part) {
   State& s = *state_;
-  const bool joins = !s.waiting.empty();
-  CompressedRecording& into = joins ? s.waiting.front().data : s.recordings.back().data;
+  const bool joins = s.waiting.has_value();
+  if (!joins && s.recordings.empty()) return s.estimate;  // nothing was begun
+  CompressedRecording& into = joins ? s.waiting->data : s.recordings.back().data;
   into.windows.insert(into.windows.end(), part.windows.begin(), part.windows.end());
   into.name = part.name;
   into.course = std::move(part.course);
@@ -161,8 +161,8 @@ const RunningEstimate& SequentialSolve::update(CompressedRecording part) {
       s.estimate.values.recording_bias[r] = s.estimate.values.recording_bias[r - 1];
     s.linearisations.clear();
     s.problem.reset();  // it refers to the recordings
-    s.recordings.push_back(std::move(s.waiting.front()));
-    s.waiting.clear();
+    s.recordings.push_back(std::move(*s.waiting));
+    s.waiting.reset();
   }
   if (!s.problem) {
     s.linearise();
