@@ -96,6 +96,11 @@ Connection::Connection(const std::string& url) : implementation_(std::make_uniqu
                          ? "; is there a route for multicast? On one machine: ip route add 224.0.0.0/4 dev lo"
                          : ""));
   }
+  // 1.3.1 says that all is well where no server is
+  if (has_provider(self.url, "tcpq") && lcm_get_fileno(self.lcm) < 0) {
+    lcm_destroy(std::exchange(self.lcm, nullptr));
+    throw Error(ExitCode::kTransport, self.url + ": no server answers there");
+  }
 }
 
 Connection::~Connection() {
@@ -120,6 +125,7 @@ void Connection::publish(const std::string& channel, std::string_view data) {
 
 bool Connection::handle(int milliseconds) {
   Implementation& self = *implementation_;
+  if (lcm_get_fileno(self.lcm) < 0) throw Error(ExitCode::kTransport, self.url + ": the connection is lost");
   const int handled = lcm_handle_timeout(self.lcm, milliseconds);
   if (self.thrown) std::rethrow_exception(std::exchange(self.thrown, nullptr));
   if (handled < 0 && errno == EINTR) return false;

@@ -44,6 +44,13 @@ inline double load_double(const char* p) {
   return v;
 }
 
+inline float load_float(const char* p) {
+  const std::uint32_t bits = load_u32(p);
+  float v = 0.0F;
+  std::memcpy(&v, &bits, sizeof v);
+  return v;
+}
+
 template <class U>
 void append_unsigned(std::string& out, U v) {
   const U big = to_big_endian(v);

@@ -112,18 +112,21 @@ void LcmDecoder::deliver_angles(const LcmEvent& event, std::int64_t utime, const
 }
 
 void LcmDecoder::deliver(const LcmEvent& event, std::int64_t utime, const InertialSample<double>& sample) {
-  for (int i = 0; i < 3; ++i) {
-    for (const auto& [value, field] :
-         {std::pair{sample.w(i), "angular_rate["}, std::pair{sample.f(i), "specific_force["}}) {
-      if (std::abs(value) < kLargestReading) continue;
-      const Error wrong = fault(event, field + std::to_string(i) + "]",
-                                std::isfinite(value) ? "is beyond any sensor" : "is not finite");
-      if (!std::isfinite(value)) throw wrong;
-      return damage(event, wrong);
-    }
-  }
+  const double w = std::abs(sample.w(0)) + std::abs(sample.w(1)) + std::abs(sample.w(2));
+  const double f = std::abs(sample.f(0)) + std::abs(sample.f(1)) + std::abs(sample.f(2));
+  if (!(w + f < kLargestReading)) return doubt(event, sample);
   ++samples_;
   sink_.imu(utime, sample);
+}
+
+/// Names the number that is none, or beyond any sensor.
+void LcmDecoder::doubt(const LcmEvent& event, const InertialSample<double>& sample) {
+  for (int i = 0; i < 6; ++i) {
+    const double value = i < 3 ? sample.w(i) : sample.f(i - 3);
+    const std::string field = (i < 3 ? "angular_rate[" : "specific_force[") + std::to_string(i % 3) + "]";
+    if (!std::isfinite(value)) throw fault(event, field, "is not finite");
+    if (std::abs(value) >= kLargestReading / 6.0) return damage(event, fault(event, field, "is beyond any sensor"));
+  }
 }
 
 void LcmDecoder::batch(const LcmEvent& event) {

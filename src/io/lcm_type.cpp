@@ -280,6 +280,7 @@ LcmFieldReader::LcmFieldReader(const LcmTypes& types, const std::string& type, c
   std::vector<Wanted> wanted;
   for (std::size_t i = 0; i < paths.size(); ++i) wanted.push_back({i, split(paths[i])});
   compile(types, type, wanted, 0);
+  for (Step& step : program_) step.whole = at_most(step.bytes, step.constant);
 }
 
 bool LcmFieldReader::primitive_of(const std::string& type, Primitive& primitive) {
@@ -313,6 +314,22 @@ std::size_t LcmFieldReader::size_of(Primitive primitive) {
       break;
   }
   return 1;
+}
+
+std::int64_t LcmFieldReader::integer(Primitive primitive, const char* p) {
+  switch (primitive) {
+    case Primitive::kInt64:
+      return load_i64(p);
+    case Primitive::kInt32:
+      return static_cast<std::int32_t>(load_u32(p));
+    case Primitive::kInt16:
+      return static_cast<std::int16_t>(
+          static_cast<std::uint16_t>(static_cast<unsigned char>(p[0]) << 8U | static_cast<unsigned char>(p[1])));
+    case Primitive::kByte:
+      return static_cast<unsigned char>(*p);
+    default:
+      return static_cast<signed char>(*p);
+  }
 }
 
 /// Bytes that nothing is taken from; neighbours become one step.
@@ -427,8 +444,9 @@ void LcmFieldReader::compile_member(const LcmTypes& types, const LcmMember& memb
 
 /// Elements of a step: false when a count is negative or they cannot fit into @p left bytes.
 bool LcmFieldReader::elements(const Step& step, std::size_t left, std::size_t& count) const {
-  const std::size_t most = left / step.bytes;
   count = step.constant;
+  if (step.counters.empty()) return step.whole <= left;
+  const std::size_t most = left / step.bytes;
   for (const std::size_t counter : step.counters) {
     const std::int64_t n = counter_[counter];
     if (n < 0) return false;
@@ -450,41 +468,16 @@ void LcmFieldReader::take(const Step& step, const Capture& capture, const char* 
     if (first >= count) return;
     count = first + 1;
   }
-  for (std::size_t i = first; i < count; ++i) {
-    const char* p = from + i * step.bytes;
-    switch (step.primitive) {
-      case Primitive::kDouble:
-        field.real.push_back(load_double(p));
-        break;
-      case Primitive::kFloat: {
-        const std::uint32_t bits = load_u32(p);
-        float value = 0.0F;
-        std::memcpy(&value, &bits, sizeof value);
-        field.real.push_back(static_cast<double>(value));
-        break;
-      }
-      case Primitive::kInt64:
-        field.integer.push_back(load_i64(p));
-        break;
-      case Primitive::kInt32:
-        field.integer.push_back(static_cast<std::int32_t>(load_u32(p)));
-        break;
-      case Primitive::kInt16: {
-        const auto high = static_cast<unsigned char>(p[0]);
-        const auto low = static_cast<unsigned char>(p[1]);
-        field.integer.push_back(static_cast<std::int16_t>(static_cast<std::uint16_t>(high << 8U | low)));
-        break;
-      }
-      case Primitive::kByte:
-        field.integer.push_back(static_cast<unsigned char>(*p));
-        break;
-      case Primitive::kInt8:
-      case Primitive::kBoolean:
-        field.integer.push_back(static_cast<signed char>(*p));
-        break;
-      case Primitive::kString:
-        break;
-    }
+  const char* p = from + first * step.bytes;
+  if (step.primitive == Primitive::kDouble || step.primitive == Primitive::kFloat) {
+    std::size_t at = field.real.size();
+    field.real.resize(at + count - first);
+    for (std::size_t i = first; i < count; ++i, p += step.bytes)
+      field.real[at++] = step.primitive == Primitive::kDouble ? load_double(p) : static_cast<double>(load_float(p));
+  } else {
+    std::size_t at = field.integer.size();
+    field.integer.resize(at + count - first);
+    for (std::size_t i = first; i < count; ++i, p += step.bytes) field.integer[at++] = integer(step.primitive, p);
   }
 }
 
@@ -516,11 +509,7 @@ bool LcmFieldReader::read(std::string_view message) {
         p += step.bytes * count;
         break;
       case Operation::kCount: {
-        std::int64_t value = 0;
-        for (std::size_t i = 0; i < step.bytes; ++i)
-          value = static_cast<std::int64_t>(static_cast<std::uint64_t>(value) << 8U | static_cast<unsigned char>(p[i]));
-        const unsigned unused = 64U - 8U * static_cast<unsigned>(step.bytes);
-        value = static_cast<std::int64_t>(static_cast<std::uint64_t>(value) << unused) >> unused;
+        const std::int64_t value = integer(step.primitive, p);
         counter_[step.counter] = value;
         for (const Capture& capture : step.captures) field_[capture.field].integer.push_back(value);
         p += step.bytes;

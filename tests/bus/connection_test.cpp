@@ -79,6 +79,7 @@ TEST(Connection, RefusesAddressesThatWouldGoSomewhereElse) {
                  Connection("tcpq://no.such.host:7712"));
   EXPECT_REFUSES(ExitCode::kTransport, "'localhost' should be an address", Connection("tcpq://localhost"));
   EXPECT_REFUSES(ExitCode::kTransport, "no connection", Connection("gopher://"));
+  EXPECT_REFUSES(ExitCode::kTransport, "tcpq://127.0.0.1:1: no", Connection("tcpq://127.0.0.1:1"));
 }
 
 TEST(Connection, SaysWhetherItDrops) { EXPECT_TRUE(Connection(kMemory).lossless()); }

@@ -76,6 +76,7 @@ class LcmDecoder {
  private:
   void damage(const LcmEvent& event, const Error& fault);
   void deliver(const LcmEvent& event, std::int64_t utime, const InertialSample<double>& sample);
+  void doubt(const LcmEvent& event, const InertialSample<double>& sample);
   void batch(const LcmEvent& event);
   void mapped_imu(const LcmEvent& event);
   void deliver_angles(const LcmEvent& event, std::int64_t utime, const std::array<double, 2>& angle);

@@ -102,6 +102,7 @@ class LcmFieldReader {
     std::size_t counter = 0;            ///< where a count is kept
     std::size_t bytes = 0;              ///< of an element, at least
     std::size_t constant = 1;           ///< elements: constant * the counters
+    std::size_t whole = 0;              ///< bytes of them, where there is no counter
     std::vector<std::size_t> counters;  ///< ...
     std::size_t target = 0;             ///< of a loop: behind its end; of an end: its loop
   };
@@ -118,6 +119,7 @@ class LcmFieldReader {
 
   static bool primitive_of(const std::string& type, Primitive& primitive);
   static std::size_t size_of(Primitive primitive);
+  static std::int64_t integer(Primitive primitive, const char* p);
   void compile(const LcmTypes& types, const std::string& type, const std::vector<Wanted>& wanted, int depth);
   void compile_member(const LcmTypes& types, const LcmMember& member, const std::vector<Wanted>& wanted,
                       std::map<std::string, std::size_t>& counters, int depth);
