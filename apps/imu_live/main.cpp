@@ -5,7 +5,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <atomic>
+#include <chrono>
 #include <cstdio>
 #include <optional>
 
@@ -25,6 +25,8 @@ class Page;
 
 namespace trunnion::app {
 namespace {
+
+constexpr auto kSayEvery = std::chrono::milliseconds(50);
 
 struct Options {
   std::string run;
@@ -99,7 +101,11 @@ ExitCode live(const Options& o, SharedState& state) {
 #endif
   Words words(state);
   bool input = true;
+  auto said = std::chrono::steady_clock::now();
   while (session.step()) {
+    const auto now = std::chrono::steady_clock::now();
+    if (now - said < kSayEvery) continue;
+    said = now;
     if (interrupted()) {
       words.end();
       std::fprintf(stderr, "interrupted: start again with the same run file to go on\n");
@@ -115,9 +121,23 @@ ExitCode live(const Options& o, SharedState& state) {
     s.guidance = "solving";
   });
   words.say();
-  const calibration::Solution solution =
-      calibration::solve_table(session.recordings(), rig.rig, run.site, table_options(run, mounts));
-  const io::CalibrationFile file = calibration_of(run, solution, session.inputs(), mounts);
+  calibration::Solution solution;
+  io::CalibrationFile file;
+  try {
+    solution = calibration::solve_table(session.recordings(), rig.rig, run.site, table_options(run, mounts));
+    file = calibration_of(run, solution, session.inputs(), mounts);
+  } catch (const Error& e) {
+    words.end();
+    state.change([&](LiveState& s) {
+      s.phase = Phase::kFailed;
+      s.guidance = "no calibration";
+      s.verdict = e.what();
+    });
+#ifdef TRUNNION_HAS_PAGE
+    if (page) page->flush();
+#endif
+    throw;
+  }
   words.end();
   if (!o.output.empty()) io::write_whole(o.output, io::to_yaml(file));
   print_calibration(solution, file, run.sheet.has_noise);

@@ -65,9 +65,12 @@ Page::Page(int port, const SharedState& state, std::function<void()> next)
   server.Get("/state", [&state](const httplib::Request&, httplib::Response& response) {
     response.set_content(state.json(), "application/json");
   });
-  server.Post("/next", [next = std::move(next)](const httplib::Request&, httplib::Response& response) {
-    next();
-    response.status = 204;
+  server.Post("/next", [&state, next = std::move(next)](const httplib::Request& request, httplib::Response& response) {
+    // a click belongs to what its page showed: a second one, or one of an old page, is none
+    const LiveState now = state.copy();
+    const std::string shown = request.get_param_value("phase") + request.get_param_value("recording");
+    response.status = shown == name_of(now.phase) + std::to_string(now.recording) ? 204 : 409;
+    if (response.status == 204) next();
   });
   server.Get("/events", [&self](const httplib::Request&, httplib::Response& response) {
     if (++self.browsers > kMostBrowsers) {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The page of a live calibration, for a browser on the same machine: /, /state (JSON), /events (server-sent), and
-/// POST /next, which does what Enter does.
+/// POST /next?phase=waiting&recording=1, which does what Enter does while that is what goes on.
 
 #pragma once
 

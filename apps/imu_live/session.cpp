@@ -45,7 +45,7 @@ Session::Session(const io::RunFile& run, const io::RigFile& rig, const std::vect
       started_(Clock::now()),
       watched_(started_),
       shown_(started_),
-      estimated_(started_) {
+      next_estimate_(started_) {
   for (const io::RecordingFiles& files : run.recordings) {
     if (files.lcm.empty() || files.mount.empty())
       throw Error(ExitCode::kUsage, run.path +
@@ -203,10 +203,12 @@ void Session::begin_again(const std::string& why) {
 
 /// What came since the last time, to the estimator.
 void Session::hand_over() {
+  const auto begin = Clock::now();
   calibration::CompressedRecording part = compressor_->so_far(handed_over_);
   handed_over_ += part.windows.size();
   estimator_.add(std::move(part));
-  estimated_ = Clock::now();
+  // the course so far takes longer the longer it is: the bus is to wait a twentieth of the time at most
+  next_estimate_ = Clock::now() + std::max<Clock::duration>(kEstimateEvery, 20 * (Clock::now() - begin));
 }
 
 void Session::finish_recording() {
@@ -315,7 +317,7 @@ void Session::watch() {
       say_once(said_loss_, std::to_string(sequence.lost()) + " samples were lost on the way, and counting");
     if (compressor_->figures().saturated > 0)
       say_once(said_saturation_, "saturated: samples at or past the range of the sheet; turn slower");
-    if (now - estimated_ > kEstimateEvery && !estimator_.busy()) hand_over();
+    if (now > next_estimate_ && !estimator_.busy()) hand_over();
   }
   if (now - shown_ > kShowEvery) show_figures();
   int clicks = clicks_.exchange(0);

@@ -111,7 +111,7 @@ class Session {
   Clock::time_point watched_;
   Clock::time_point flushed_;
   Clock::time_point shown_;
-  Clock::time_point estimated_;
+  Clock::time_point next_estimate_;
   bool arrived_ = false;  // since the recording began or was taken up
   long long strays_ = 0;
   long long restarts_ = 0;

@@ -42,6 +42,8 @@ LcmJournal::LcmJournal(std::string path, const std::function<void(const LcmEvent
         number_ = event.number + 1;
         ++recovered_;
       }
+      if (recovered_ == 0 && status.st_size > static_cast<off_t>(kBlock))
+        throw input_error(part, 0, "", "is no LCM log that was begun: move it away");
       if (::ftruncate(descriptor_, size_) != 0 || ::lseek(descriptor_, size_, SEEK_SET) != size_)
         throw input_error(part, 0, "", std::string("cannot write: ") + std::strerror(errno));
     }

@@ -72,6 +72,13 @@ TEST_F(LcmJournalTest, TwoProgramsDoNotRecordIntoOne) {
   EXPECT_REFUSES(ExitCode::kInput, "cannot write", LcmJournal(folder_ / "none/a.lcm", nullptr));
 }
 
+TEST_F(LcmJournalTest, AFileThatIsNoLogIsNotOverwritten) {
+  const std::string other(100000, 'x');
+  write_whole(LcmJournal::part_of(path_), other);
+  EXPECT_REFUSES(ExitCode::kInput, "a.lcm.part: is no LCM log that was begun", LcmJournal(path_, nullptr));
+  EXPECT_EQ(read_whole(LcmJournal::part_of(path_)), other);
+}
+
 TEST_F(LcmJournalTest, SetAsideItTakesANameThatIsFree) {
   for (int i = 1; i <= 3; ++i) {
     LcmJournal journal(path_, nullptr);
