@@ -27,9 +27,7 @@ constexpr std::size_t kMostChannels = 1000;
 class ChannelLook {
  public:
   void add(const io::LcmEvent& event, const io::LcmTypes& types) {
-    std::uint64_t fingerprint = 0;
-    for (std::size_t i = 0; i < 8 && i < event.data.size(); ++i)
-      fingerprint = fingerprint << 8U | static_cast<unsigned char>(event.data[i]);
+    const std::uint64_t fingerprint = io::fingerprint_of(event.data);
     if (messages_ == 0) {
       first_ = event.timestamp;
       recognise(fingerprint, types);
@@ -62,11 +60,9 @@ class ChannelLook {
     double squares = 0.0;
     for (const float s : steps_) squares += (static_cast<double>(s) - step) * (static_cast<double>(s) - step);
     const double duration = 1e-6 * static_cast<double>(last_ - first_);
-    char hexadecimal[24];
-    std::snprintf(hexadecimal, sizeof hexadecimal, "0x%016llx", static_cast<unsigned long long>(fingerprint_));
     Json json = {{"messages", messages_},
                  {"types", types_},
-                 {"fingerprint", hexadecimal},
+                 {"fingerprint", io::hexadecimal(fingerprint_)},
                  {"rate_hz", duration > 0.0 ? static_cast<double>(messages_ - 1) / duration : 0.0},
                  {"period_ms", 1e3 * step},
                  {"jitter_ms", steps_.empty() ? 0.0 : 1e3 * std::sqrt(squares / static_cast<double>(steps_.size()))},
@@ -151,7 +147,9 @@ void look_at_channels(const std::string& path, const io::LcmTypes& types, Json& 
 void print_channels(const Json& json) {
   std::printf("  %-20s %-28s %9s %9s %9s %9s %9s %8s %7s %7s %7s\n", "channel", "type", "messages", "Hz", "1/Hz ms",
               "jitter ms", "kB/s", "undecod.", "lost", "repeat", "backw.");
-  for (const auto& [name, c] : json["channels"].items()) {
+  for (const auto& item : json["channels"].items()) {
+    const std::string& name = item.key();
+    const Json& c = item.value();
     const std::string type =
         c["types"].empty() ? c["fingerprint"].get<std::string>() : c["types"][0].get<std::string>();
     const auto number = [&](const char* key) {

@@ -17,6 +17,7 @@
 namespace trunnion::app {
 namespace {
 
+constexpr double kTolerableDamage = 1e-3;  // messages that are left out, against samples
 constexpr std::int32_t kNoTemperature = std::numeric_limits<std::int32_t>::min();
 
 bool is_block(const std::string& path) { return path.size() > 4 && path.compare(path.size() - 4, 4, ".bin") == 0; }
@@ -104,15 +105,25 @@ InertialSample<double> Corrector::correct(const io::ImuCounts& raw) const {
 CorrectedMessages::CorrectedMessages(const std::string& source, const io::LcmChannels& channels)
     : decoder_(source, taken_, channels), mapped_(channels.imu.map != nullptr) {}
 
+const std::string* CorrectedMessages::left_out(const io::LcmEvent& event, const std::string& why) {
+  why_ = why;
+  if (first_fault_.empty()) first_fault_ = why;
+  ++damaged_;
+  damaged_bytes_ += static_cast<long long>(event.data.size());
+  return nullptr;
+}
+
+void CorrectedMessages::finish() const {
+  if (static_cast<double>(damaged_) > kTolerableDamage * static_cast<double>(samples_))
+    throw Error(ExitCode::kInput, first_fault_);
+}
+
 const std::string* CorrectedMessages::correct(const io::LcmEvent& event, const Corrector& corrector) {
   why_.clear();
   if (!mapped_) {
     if (const auto raw = io::decode_imu_counts(event.data)) {
       if (!corrector.takes_counts()) {
-        why_ = "raw counts, and no sheet says what one is";
-        ++damaged_;
-        damaged_bytes_ += static_cast<long long>(event.data.size());
-        return nullptr;
+        return left_out(event, "raw counts, and no sheet says what one is");
       }
       sequence_.add(raw->sequence);
       ++samples_;
@@ -136,11 +147,8 @@ const std::string* CorrectedMessages::correct(const io::LcmEvent& event, const C
     taken_.values.clear();
   }
   if (!taken_.values.empty() && !corrector.takes_si()) why_ = "readings in SI, and the block is for raw counts";
-  if (!why_.empty()) {
-    ++damaged_;
-    damaged_bytes_ += static_cast<long long>(event.data.size());
-  }
-  if (taken_.values.empty() || !why_.empty()) return nullptr;
+  if (!why_.empty()) return left_out(event, why_);
+  if (taken_.values.empty()) return nullptr;
   const double temperature = io::temperature_of(event.data);
   for (InertialSample<double>& value : taken_.values) value = corrector.correct(value, temperature);
   const long long first = samples_;
@@ -148,7 +156,8 @@ const std::string* CorrectedMessages::correct(const io::LcmEvent& event, const C
   if (!mapped_) {
     sequence_ = decoder_.imu_sequence();
     message_.assign(event.data);  // stamps, sequence and temperature stay
-    io::replace_samples(taken_.values, message_);
+    if (!io::replace_samples(taken_.values, message_))
+      return left_out(event, "is no message that can be written again");
   } else if (taken_.values.size() == 1) {
     io::encode_imu(taken_.stamps.front(), first, taken_.values.front(), message_);
   } else {

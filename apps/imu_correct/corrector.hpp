@@ -68,8 +68,8 @@ class CorrectedMessages {
   [[nodiscard]] long long samples() const { return samples_; }
   [[nodiscard]] long long damaged() const { return damaged_; }
   [[nodiscard]] long long damaged_bytes() const { return damaged_bytes_; }
-  /// Of a log, after the last message. @throws Error (input) as LcmDecoder::finish() does
-  void finish() const { decoder_.finish(); }
+  /// Of a log, after the last message. @throws Error (input) when more than one in a thousand was left out
+  void finish() const;
   [[nodiscard]] const SequenceWatch& sequence() const { return mapped_ ? decoder_.imu_sequence() : sequence_; }
 
  private:
@@ -84,12 +84,15 @@ class CorrectedMessages {
     std::vector<InertialSample<double>> values;
   };
 
+  const std::string* left_out(const io::LcmEvent& event, const std::string& why);
+
   Samples taken_;
   io::LcmDecoder decoder_;
   bool mapped_;
   SequenceWatch sequence_;
   std::string message_;
   std::string why_;
+  std::string first_fault_;
   long long samples_ = 0;
   long long damaged_ = 0;
   long long damaged_bytes_ = 0;

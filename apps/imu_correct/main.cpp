@@ -56,9 +56,9 @@ class Correct {
       : o_(o),
         channels_(channels(o)),
         connection_(o.url),
+        file_(o.corrector.calibration),
         corrector_(std::make_unique<Corrector>(o.corrector)),
-        messages_(connection_.url(), channels_),
-        file_(o.corrector.calibration) {
+        messages_(connection_.url(), channels_) {
     if (channels_.imu.name == o.out)
       throw Error(ExitCode::kUsage, "--out " + o.out + ": is the channel that is corrected");
     connection_.subscribe(channels_.imu.name, &Correct::on_message, *this);
@@ -111,9 +111,9 @@ class Correct {
   const Options& o_;
   io::LcmChannels channels_;
   bus::Connection connection_;
+  Watched file_;  // before it is read
   std::unique_ptr<Corrector> corrector_;
   CorrectedMessages messages_;
-  Watched file_;
   std::string said_;
 };
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <exception>
 #include <utility>
 
 #include "../imu_calibrate/result.hpp"
@@ -35,11 +36,30 @@ std::string text_of(const PlanStep& step) {
 
 void add_notice(SharedState& state, const std::string& text) {
   static const auto start = std::chrono::steady_clock::now();
-  const double t = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   state.change([&](LiveState& s) {
-    s.notices.push_back({t, text});
+    const double t = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    s.notices.push_back({t, s.notices.empty() ? 1 : s.notices.back().serial + 1, text});
     if (s.notices.size() > kNotices) s.notices.pop_front();
   });
+}
+
+std::vector<LiveState::Entry> entries_of(const io::RunFile& run, const std::vector<calibration::Parameter>& parameters,
+                                         const Eigen::VectorXd& x, const Eigen::VectorXd& sigma) {
+  std::vector<LiveState::Entry> entries;
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const calibration::Parameter& p = parameters[i];
+    const auto at = static_cast<Eigen::Index>(i);
+    const double stated = run.limits[static_cast<std::size_t>(p.kind)].sigma;
+    const bool judged = stated >= 0.0 && p.unit == kind_of(p.kind).unit && p.name != "heading";
+    const double limit = judged ? stated : p.refuse_above * p.in_unit;
+    entries.push_back({p.name, p.unit, x(at) * p.in_unit, sigma(at) * p.in_unit, limit});
+  }
+  return entries;
+}
+
+int count_within(const std::vector<LiveState::Entry>& entries) {
+  return static_cast<int>(std::count_if(entries.begin(), entries.end(),
+                                        [](const LiveState::Entry& entry) { return entry.sigma <= entry.limit; }));
 }
 
 Estimator::Estimator(const io::RunFile& run, const io::RigFile& rig, const std::vector<std::string>& mounts,
@@ -68,18 +88,13 @@ void Estimator::push(Job job) {
   changed_.notify_all();
 }
 
-void Estimator::begin(int mount) { push({Job::Kind::kBegin, mount, {}}); }
-void Estimator::add(calibration::CompressedRecording part) { push({Job::Kind::kAdd, 0, std::move(part)}); }
-void Estimator::abandon() { push({Job::Kind::kAbandon, 0, {}}); }
+void Estimator::begin(int recording, int mount) { push({Job::Kind::kBegin, recording, mount, {}}); }
+void Estimator::add(calibration::CompressedRecording part) { push({Job::Kind::kAdd, 0, 0, std::move(part)}); }
+void Estimator::abandon() { push({Job::Kind::kAbandon, 0, 0, {}}); }
 
 bool Estimator::busy() const {
   const std::lock_guard<std::mutex> lock(mutex_);
   return working_ || !jobs_.empty();
-}
-
-void Estimator::drain() {
-  std::unique_lock<std::mutex> lock(mutex_);
-  changed_.wait(lock, [this] { return !working_ && jobs_.empty(); });
 }
 
 void Estimator::work() {
@@ -91,7 +106,12 @@ void Estimator::work() {
     jobs_.pop_front();
     working_ = true;
     lock.unlock();
-    take(job);
+    try {
+      if (!failed_) take(job);
+    } catch (const std::exception& e) {  // the estimate leads, it decides nothing: the recording goes on without it
+      failed_ = true;
+      notice(std::string("no more estimates: ") + e.what());
+    }
     lock.lock();
     working_ = false;
     changed_.notify_all();
@@ -101,6 +121,7 @@ void Estimator::work() {
 void Estimator::take(Job& job) {
   if (job.kind != Job::Kind::kAdd) {
     if (job.kind == Job::Kind::kBegin) {
+      recording_ = job.recording;
       mount_ = job.mount;
       solve_.begin(mount_);
     } else {
@@ -175,18 +196,8 @@ void Estimator::follow(const calibration::CompressedRecording& part) {
 void Estimator::show_estimate() {
   const calibration::RunningEstimate& estimate = solve_.estimate();
   if (estimate.parameters.empty()) return;
-  std::vector<LiveState::Entry> entries;
-  int within = 0;
-  for (std::size_t i = 0; i < estimate.parameters.size(); ++i) {
-    const calibration::Parameter& p = estimate.parameters[i];
-    const auto at = static_cast<Eigen::Index>(i);
-    const double stated = run_.limits[static_cast<std::size_t>(p.kind)].sigma;
-    const bool judged = stated >= 0.0 && p.unit == kind_of(p.kind).unit && p.name != "heading";
-    const double limit = judged ? stated : p.refuse_above * p.in_unit;
-    const double sigma = estimate.sigma(at) * p.in_unit;
-    within += sigma <= limit ? 1 : 0;
-    entries.push_back({p.name, p.unit, estimate.x(at) * p.in_unit, sigma, limit});
-  }
+  std::vector<LiveState::Entry> entries = entries_of(run_, estimate.parameters, estimate.x, estimate.sigma);
+  const int within = count_within(entries);
   state_.change([&](LiveState& s) {
     s.entries = std::move(entries);
     s.within = within;
@@ -207,11 +218,13 @@ void Estimator::show_plan() {
   state_.change([&](LiveState& s) {
     s.steps.clear();
     for (int i = 0; i < plan_.size(); ++i) s.steps.push_back({text_of(plan_[i]), plan_[i].seen, plan_[i].seconds});
-    // all mounts must be seen before the sigmas can be enough
-    const bool certain = s.recording == s.recordings && !s.entries.empty() &&
-                         s.within == static_cast<int>(s.entries.size()) && !run_.limits.empty();
-    s.enough = next < 0 || (certain && std::any_of(run_.limits.begin(), run_.limits.end(),
-                                                   [](const io::EntryVerdict& limit) { return limit.sigma >= 0.0; }));
+    if (s.recording != recording_) return;  // the operator is on already
+    // sigmas can be enough when every mount is in them
+    const bool stated = std::any_of(run_.limits.begin(), run_.limits.end(),
+                                    [](const io::EntryVerdict& limit) { return limit.sigma >= 0.0; });
+    const bool certain = stated && !s.entries.empty() && s.within == static_cast<int>(s.entries.size()) &&
+                         solve_.estimate().recordings == static_cast<std::size_t>(s.recordings);
+    s.enough = next < 0 || certain;
     if (s.phase != Phase::kRecording) return;
     if (s.enough) {
       s.guidance = "enough of " + s.mount + ": press Enter to end it";

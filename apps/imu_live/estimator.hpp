@@ -30,20 +30,19 @@ class Estimator {
   Estimator& operator=(const Estimator&) = delete;
   ~Estimator();
 
-  /// A recording begins in this mount of the rig.
-  void begin(int mount);
+  /// Recording number @p recording, from 1, begins in this mount of the rig.
+  void begin(int recording, int mount);
   /// What has come of the recording since the last call. Not dropped, and done in order.
   void add(calibration::CompressedRecording part);
   /// The recording that was begun last is void.
   void abandon();
-  /// Waits until all that was handed over is done.
-  void drain();
   /// Whether add() would wait its turn.
   [[nodiscard]] bool busy() const;
 
  private:
   struct Job {
     enum class Kind { kBegin, kAdd, kAbandon } kind = Kind::kAdd;
+    int recording = 0;
     int mount = 0;
     calibration::CompressedRecording part;
   };
@@ -62,7 +61,9 @@ class Estimator {
   SharedState& state_;
   calibration::SequentialSolve solve_;
 
+  int recording_ = 0;
   int mount_ = 0;
+  bool failed_ = false;
   TablePlan plan_;
   std::optional<calibration::MountWatch> watch_;
   std::vector<ObservationWindow> ahead_;  // of the encoders
@@ -79,6 +80,13 @@ class Estimator {
   bool end_ = false;
   std::thread thread_;  // last: it uses the rest
 };
+
+/// The entries of an estimate, or of the calibration, each against its limit.
+std::vector<LiveState::Entry> entries_of(const io::RunFile& run, const std::vector<calibration::Parameter>& parameters,
+                                         const Eigen::VectorXd& x, const Eigen::VectorXd& sigma);
+
+/// How many of them have a sigma within its limit.
+int count_within(const std::vector<LiveState::Entry>& entries);
 
 /// Adds a notice with the time since the start of the program.
 void add_notice(SharedState& state, const std::string& text);

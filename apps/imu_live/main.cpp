@@ -17,16 +17,13 @@
 #include "trunnion/io/whole_file.hpp"
 #ifdef TRUNNION_HAS_PAGE
 #include "page.hpp"
-#else
-namespace trunnion::app {
-class Page;
-}
 #endif
 
 namespace trunnion::app {
 namespace {
 
 constexpr auto kSayEvery = std::chrono::milliseconds(50);
+constexpr auto kTwice = std::chrono::milliseconds(700);  // a second Enter within it is no answer to what is asked since
 
 struct Options {
   std::string run;
@@ -56,9 +53,9 @@ class Words {
     const LiveState s = state_.copy();
     std::vector<std::string> lines;
     for (const auto& notice : s.notices) {
-      if (notice.t > said_) lines.push_back("[" + fixed(notice.t) + " s] " + notice.text);
+      if (notice.serial > said_) lines.push_back("[" + fixed(notice.t) + " s] " + notice.text);
     }
-    if (!s.notices.empty()) said_ = s.notices.back().t;
+    if (!s.notices.empty()) said_ = s.notices.back().serial;
     // what to do is said without a terminal too, but when it is another thing, not another second of it
     const std::string what = s.guidance.substr(0, s.guidance.find(": "));
     if (what != guided_ && !s.guidance.empty()) lines.push_back(s.guidance);
@@ -80,7 +77,7 @@ class Words {
   }
   SharedState& state_;
   std::optional<ProgressLine> progress_;
-  double said_ = -1.0;
+  long long said_ = 0;
   std::string guided_;
 };
 
@@ -90,6 +87,7 @@ ExitCode live(const Options& o, SharedState& state) {
   keep_inputs(o.output, files_of(run));
   const std::vector<std::string> mounts = mounts_of(run);
   const io::RigFile rig = io::read_rig(run.rig, run.outer_axis, run.inner_axis, mounts);
+  if (!o.output.empty()) io::WholeFile(o.output);  // can it be written? Better known now than at the end
   bus::Connection connection(o.url);
   Session session(run, rig, mounts, connection, state, o.session);
 #ifdef TRUNNION_HAS_PAGE
@@ -102,6 +100,9 @@ ExitCode live(const Options& o, SharedState& state) {
   Words words(state);
   bool input = true;
   auto said = std::chrono::steady_clock::now();
+  auto changed = said - kTwice;
+  Phase phase = Phase::kWaiting;
+  int recording = 1;
   while (session.step()) {
     const auto now = std::chrono::steady_clock::now();
     if (now - said < kSayEvery) continue;
@@ -113,7 +114,11 @@ ExitCode live(const Options& o, SharedState& state) {
     }
     bool entered = false;
     if (input) input = take_enter(entered);
-    if (entered) session.next();
+    const LiveState shown = state.copy();
+    if (shown.phase != phase || shown.recording != recording) changed = now;
+    phase = shown.phase;
+    recording = shown.recording;
+    if (entered && now - changed > kTwice) session.next();
     words.say();
   }
   state.change([](LiveState& s) {
@@ -139,9 +144,12 @@ ExitCode live(const Options& o, SharedState& state) {
     throw;
   }
   words.end();
-  if (!o.output.empty()) io::write_whole(o.output, io::to_yaml(file));
   print_calibration(solution, file, run.sheet.has_noise);
+  if (!o.output.empty()) io::write_whole(o.output, io::to_yaml(file));
   state.change([&](LiveState& s) {
+    s.entries =
+        entries_of(run, solution.parameters, solution.x, solution.observability.covariance.diagonal().cwiseSqrt());
+    s.within = count_within(s.entries);
     s.phase = Phase::kDone;
     s.guidance = "done";
     s.verdict = file.within_limits ? "within limits" : "out of limits";

@@ -21,12 +21,11 @@ constexpr int kMostBrowsers = 6;  // each holds a thread
 
 /// A page of another site may not read or click here: its requests carry its own host or origin.
 bool from_here(const httplib::Request& request) {
-  const auto is_here = [](const std::string& host) {
-    return host.rfind("127.0.0.1", 0) == 0 || host.rfind("localhost", 0) == 0;
-  };
-  if (!is_here(request.get_header_value("Host"))) return false;
+  const std::string authority = request.get_header_value("Host");
+  const std::string host = authority.substr(0, authority.find(':'));
+  if (host != "127.0.0.1" && host != "localhost") return false;
   const std::string origin = request.get_header_value("Origin");
-  return origin.empty() || is_here(origin.substr(std::min(origin.size(), std::string("http://").size())));
+  return origin.empty() || origin == "http://" + authority;
 }
 
 }  // namespace
@@ -107,6 +106,7 @@ Page::Page(int port, const SharedState& state, std::function<void()> next)
                     " is in use: choose another with --port, any free one with --port 0, or --no-page");
   self.url = "http://127.0.0.1:" + std::to_string(bound) + "/";
   self.thread = std::thread([&self] { self.server.listen_after_bind(); });
+  while (!self.server.is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));  // stop() needs it to be
 }
 
 Page::~Page() {

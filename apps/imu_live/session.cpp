@@ -3,12 +3,17 @@
 
 #include "session.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <utility>
 
 #include "../terminal.hpp"
 #include "trunnion/core/error.hpp"
+#include "trunnion/io/fault.hpp"
 
 namespace trunnion::app {
 namespace {
@@ -46,7 +51,15 @@ Session::Session(const io::RunFile& run, const io::RigFile& rig, const std::vect
       watched_(started_),
       shown_(started_),
       next_estimate_(started_) {
+  if (run.recordings.size() > kMaxRecordings)
+    throw Error(ExitCode::kInput,
+                run.path + ": more than " + std::to_string(kMaxRecordings) + " recordings in one run");
   for (const io::RecordingFiles& files : run.recordings) {
+    const std::string folder = std::filesystem::path(files.lcm).parent_path().string();
+    std::error_code error;
+    if (!files.lcm.empty() && !std::filesystem::exists(files.lcm, error) &&
+        ::access(folder.empty() ? "." : folder.c_str(), W_OK) != 0)
+      throw io::input_error(files.lcm, 0, "", std::string("cannot write: ") + std::strerror(errno));
     if (files.lcm.empty() || files.mount.empty())
       throw Error(ExitCode::kUsage, run.path +
                                         ": a live calibration records LCM logs on a rig: each recording needs a "
@@ -101,7 +114,7 @@ void Session::load(std::size_t index) {
   inputs_.losses.bytes += losses.bytes;
   inputs_.losses.samples += losses.samples;
   recordings_.push_back({compressor.finish(), mount_of(index)});
-  estimator_.begin(mount_of(index));
+  estimator_.begin(static_cast<int>(index) + 1, mount_of(index));
   estimator_.add(recordings_.back().data);
   add_notice(state_, files.lcm + " is recorded already and is used; move it away to record " + files.mount + " again");
 }
@@ -111,8 +124,8 @@ void Session::fresh_recording() {
   compressor_ = std::make_unique<calibration::Compressor>(compress_options(run_, files));
   decoder_.emplace(connection_.url(), message_, run_.channels);
   handed_over_ = 0;
-  strays_ = restarts_ = 0;
-  said_damage_ = said_saturation_ = said_two_ = said_loss_ = false;
+  said_strays_ = restarts_ = 0;
+  said_damage_ = said_saturation_ = said_two_ = said_loss_ = said_journal_ = false;
   arrived_ = false;
 }
 
@@ -121,20 +134,37 @@ void Session::start() {
   const std::size_t index = recordings_.size();
   const io::RecordingFiles& files = run_.recordings[index];
   fresh_recording();
-  estimator_.begin(mount_of(index));
+  estimator_.begin(static_cast<int>(index) + 1, mount_of(index));
   recording_ = true;
-  journal_ = std::make_unique<io::LcmJournal>(files.lcm, [&](const io::LcmEvent& event) {
-    if (event.channel == run_.channels.imu.name) take(event, true);
-    if (event.channel == run_.channels.encoder.name) take(event, false);
-  });
-  imu_.any = encoder_.any = imu_.silent = encoder_.silent = false;
+  std::string unfit;
+  journal_.reset();
+  try {
+    journal_ = std::make_unique<io::LcmJournal>(files.lcm, [&](const io::LcmEvent& event) {
+      try {
+        if (unfit.empty() && event.channel == run_.channels.imu.name) take(event, true);
+        if (unfit.empty() && event.channel == run_.channels.encoder.name) take(event, false);
+      } catch (const Error& e) {
+        unfit = e.what();
+      }
+    });
+  } catch (const Error& e) {
+    // what is in memory already is worth more than the file
+    if (inputs_.digests.size() == recordings_.size()) throw;
+    say_once(said_journal_, std::string("nothing is recorded: ") + e.what() + "; the calibration goes on");
+  }
+  imu_.last = encoder_.last = Clock::now();
+  imu_.silent = encoder_.silent = false;
   state_.change([](LiveState& s) {
     s.phase = Phase::kRecording;
     s.enough = false;
   });
-  if (journal_->recovered() > 0) {
+  if (!unfit.empty()) return begin_again(unfit);
+  if (journal_ && journal_->recovered() > 0) {
     add_notice(state_, "going on with " + files.mount + ": " + std::to_string(journal_->recovered()) +
-                           " messages are there already");
+                           " messages are there already" +
+                           (journal_->dropped() > 0 ? ", " + std::to_string(journal_->dropped()) +
+                                                          " bytes of one that was cut off are dropped"
+                                                    : ""));
     hand_over();
   } else {
     add_notice(state_, "recording " + files.mount + " into " + files.lcm);
@@ -144,7 +174,6 @@ void Session::start() {
 void Session::on_message(const io::LcmEvent& event, bool imu) {
   Arrivals& arrivals = imu ? imu_ : encoder_;
   arrivals.last = Clock::now();
-  arrivals.any = true;
   if (!recording_ && recordings_.size() < run_.recordings.size() && options_.unattended) start();
   if (!recording_) {
     ++arrivals.count;
@@ -179,26 +208,38 @@ void Session::take(const io::LcmEvent& event, bool imu) {
     for (const auto& [utime, sample] : message_.samples) compressor_->imu(utime, sample);
     for (const auto& [utime, angle] : message_.angles) compressor_->encoder(utime, angle[0], angle[1]);
   } catch (const Error& e) {
-    if (!period_known || !journal_) throw;  // the stream itself, or what is there of it, is not what the run says
+    // nothing of this journal was good yet: the stream is not what the run says
+    if (!period_known && (!journal_ || journal_->recovered() == 0)) {
+      if (journal_) discard_journal();
+      throw;
+    }
     return begin_again(e.what());
   }
   if (journal_) journal_->write(event.timestamp, event.channel, event.data);
 }
 
+/// Sets the journal aside; what is not worth keeping goes. @return where it is kept, or nothing
+std::string Session::discard_journal() {
+  std::string kept = journal_->set_aside();
+  journal_.reset();
+  std::error_code error;
+  if (compressor_->elapsed() < kWorthKeeping && std::filesystem::remove(kept, error)) kept.clear();
+  return kept;
+}
+
 /// The recording cannot go on: it is kept aside, and begins anew.
 void Session::begin_again(const std::string& why) {
   const io::RecordingFiles& files = run_.recordings[recordings_.size()];
-  std::string kept;
-  if (journal_) {
-    kept = journal_->set_aside();
-    std::error_code error;
-    if (compressor_->elapsed() < kWorthKeeping && std::filesystem::remove(kept, error)) kept.clear();
-  }
+  const std::string kept = journal_ ? discard_journal() : std::string();
   add_notice(state_, why + "; the recording of " + files.mount + " begins again" +
                          (kept.empty() ? "" : ", what there was is kept as " + kept));
   fresh_recording();
   estimator_.abandon();
-  journal_ = std::make_unique<io::LcmJournal>(files.lcm, nullptr);
+  try {
+    journal_ = std::make_unique<io::LcmJournal>(files.lcm, nullptr);
+  } catch (const Error& e) {
+    say_once(said_journal_, std::string("nothing is recorded: ") + e.what() + "; the calibration goes on");
+  }
 }
 
 /// What came since the last time, to the estimator.
@@ -223,11 +264,12 @@ void Session::finish_recording() {
     begin_again(e.what());
     return;
   }
-  const std::string digest = journal_->finish();
+  const std::string digest = journal_ ? journal_->finish() : std::string();
   if (!digest.empty()) {
     inputs_.digests.emplace_back(files.lcm, digest);
   } else {
-    add_notice(state_, "the recording is lost: " + journal_->failure() + "; the calibration goes on without it");
+    add_notice(state_, "the recording of " + files.mount + " is lost" + (journal_ ? ": " + journal_->failure() : "") +
+                           "; the calibration goes on without it");
   }
   journal_.reset();
   if (decoder_->imu_sequence().numbered()) inputs_.losses.samples += decoder_->imu_sequence().lost();
@@ -244,7 +286,6 @@ void Session::finish_recording() {
                          " lost on the way, " + std::to_string(recording.data.figures.missing) + " holes in time");
   recording_ = false;
   recordings_.push_back(std::move(recording));
-  imu_.any = encoder_.any = false;
   load_or_wait();
 }
 
@@ -254,7 +295,7 @@ void Session::say_once(bool& said, const std::string& text) {
 }
 
 void Session::watch_channel(const char* name, Arrivals& arrivals, double now_silent) {
-  if (arrivals.any && now_silent > kSilent && !arrivals.silent) {
+  if (now_silent > kSilent && !arrivals.silent) {
     arrivals.silent = true;
     add_notice(state_, std::string("lost channel: no message of ") + name + " for " + figure(now_silent, 2) + " s");
   } else if (arrivals.silent && now_silent < kSilent) {
@@ -271,7 +312,7 @@ void Session::show_figures() {
     if (past > 0.1) arrivals.rate = static_cast<double>(arrivals.count) / past;
     arrivals.count = 0;
     into.rate_hz = arrivals.rate;
-    into.silent_s = arrivals.any ? duration<double>(now - arrivals.last).count() : 0.0;
+    into.silent_s = recording_ ? duration<double>(now - arrivals.last).count() : 0.0;
     if (sequence == nullptr) return;
     into.samples = sequence->received();
     into.lost = sequence->numbered() ? sequence->lost() : 0;
@@ -285,13 +326,14 @@ void Session::show_figures() {
     s.encoder.samples = decoder_->encoders();
     s.duration = compressor_->elapsed();
     s.saturated = compressor_->figures().saturated;
+    s.strays = compressor_->strays();
   });
 }
 
 /// What is noticed between messages.
 void Session::watch() {
   const auto now = Clock::now();
-  const auto silent = [&](const Arrivals& a) { return a.any ? duration<double>(now - a.last).count() : 0.0; };
+  const auto silent = [&](const Arrivals& a) { return duration<double>(now - a.last).count(); };
   if (journal_) {
     if (!journal_->failure().empty())
       say_once(said_journal_, "nothing more is recorded: " + journal_->failure() + "; the calibration goes on");
@@ -300,10 +342,9 @@ void Session::watch() {
     watch_channel("the unit", imu_, silent(imu_));
     watch_channel("the encoders", encoder_, silent(encoder_));
     const long long strays = compressor_->strays();
-    if (strays > strays_) {
-      add_notice(state_,
-                 "a clock jumped: " + std::to_string(strays - strays_) + " stamps out of their order are left out");
-      strays_ = strays;
+    if (strays > 2 * said_strays_) {  // not each: a clock that keeps jumping would leave no room for anything else
+      add_notice(state_, "a clock jumped: " + std::to_string(strays) + " stamps out of their order are left out");
+      said_strays_ = strays;
     }
     const SequenceWatch& sequence = decoder_->imu_sequence();
     if (sequence.restarts() > restarts_) {
@@ -321,7 +362,9 @@ void Session::watch() {
   }
   if (now - shown_ > kShowEvery) show_figures();
   int clicks = clicks_.exchange(0);
-  if (options_.unattended && recording_ && arrived_ && imu_.any && encoder_.any && silent(imu_) > options_.silence &&
+  // one that was taken up may have been whole when the program was killed: then nothing more comes
+  const bool begun = arrived_ || (recording_ && journal_ && journal_->recovered() > 0 && state_.copy().enough);
+  if (options_.unattended && recording_ && begun && silent(imu_) > options_.silence &&
       silent(encoder_) > options_.silence)
     clicks = 1;
   if (clicks == 0) return;

@@ -64,7 +64,6 @@ class Session {
 
   struct Arrivals {
     Clock::time_point last;
-    bool any = false;
     bool silent = false;
     long long count = 0;  ///< samples since the rate was shown
     double rate = 0.0;
@@ -80,6 +79,7 @@ class Session {
   void fresh_recording();
   void finish_recording();
   void begin_again(const std::string& why);
+  std::string discard_journal();
   void hand_over();
   void watch();
   void watch_channel(const char* name, Arrivals& arrivals, double now_silent);
@@ -113,7 +113,7 @@ class Session {
   Clock::time_point shown_;
   Clock::time_point next_estimate_;
   bool arrived_ = false;  // since the recording began or was taken up
-  long long strays_ = 0;
+  long long said_strays_ = 0;
   long long restarts_ = 0;
   bool said_damage_ = false;
   bool said_saturation_ = false;

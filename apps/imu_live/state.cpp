@@ -42,6 +42,7 @@ std::string SharedState::json() const {
                {"imu", channel(s.imu)},
                {"encoder", channel(s.encoder)},
                {"saturated", s.saturated},
+               {"strays", s.strays},
                {"chi_square", s.chi_square},
                {"within", s.within},
                {"verdict", s.verdict},

@@ -33,6 +33,7 @@ struct LiveState {
   };
   struct Notice {
     double t = 0.0;  ///< s since the start
+    long long serial = 0;
     std::string text;
   };
   struct Point {
@@ -64,6 +65,7 @@ struct LiveState {
   Channel imu;
   Channel encoder;
   long long saturated = 0;
+  long long strays = 0;  ///< stamps out of their order
   double chi_square = 0.0;
   std::deque<Notice> notices;
   std::deque<Point> plot;

@@ -62,8 +62,8 @@ ExitCode replay(const Options& o) {
     if (++messages % 256 == 0)
       progress.show("replayed " + std::to_string(100 * event.byte / log.size()) + " %, " + std::to_string(messages) +
                     " messages");
-    return !interrupted();
   };
+  options.goes_on = [] { return !interrupted(); };
   const auto begin = std::chrono::steady_clock::now();
   const bus::ReplayFigures figures = bus::replay(log, connection, options);
   const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

@@ -9,9 +9,25 @@
 #include <thread>
 
 namespace trunnion::bus {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr double kLongestPause = 1e9;  // s: what a stray stamp can ask for stays within a clock's range
+constexpr auto kSlice = std::chrono::milliseconds(100);
+
+/// @return false when the replay is to end
+bool pause_until(Clock::time_point due, const ReplayOptions& options) {
+  for (Clock::time_point now = Clock::now(); now < due; now = Clock::now()) {
+    std::this_thread::sleep_until(std::min(due, now + kSlice));
+    if (options.goes_on && !options.goes_on()) return false;
+  }
+  return true;
+}
+
+}  // namespace
 
 ReplayFigures replay(io::LcmLogReader& log, Connection& connection, const ReplayOptions& options) {
-  using Clock = std::chrono::steady_clock;
   ReplayFigures figures;
   io::LcmEvent event;
   bool has_first = false;
@@ -29,21 +45,18 @@ ReplayFigures replay(io::LcmLogReader& log, Connection& connection, const Replay
       began = t;
       wall = Clock::now();
     } else if (options.speed > 0.0) {
-      const auto due = wall + std::chrono::duration_cast<Clock::duration>(
-                                  std::chrono::duration<double>((t - began) / options.speed));
-      const Clock::time_point now = Clock::now();
-      if (due > now) {
-        std::this_thread::sleep_until(due);
-      } else {
-        figures.latest = std::max(figures.latest, std::chrono::duration<double>(now - due).count());
-      }
+      const double pause = std::clamp((t - began) / options.speed, 0.0, kLongestPause);
+      const auto due = wall + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(pause));
+      figures.latest = std::max(figures.latest, std::chrono::duration<double>(Clock::now() - due).count());
+      if (!pause_until(due, options)) break;
     }
     channel = event.channel;
     connection.publish(channel, event.data);
     ++figures.messages;
     figures.bytes += static_cast<long long>(event.data.size());
     figures.duration = std::max(figures.duration, t - began);
-    if (options.published && !options.published(event)) break;
+    if (options.published) options.published(event);
+    if (options.goes_on && !options.goes_on()) break;
   }
   return figures;
 }

@@ -100,6 +100,7 @@ struct SequentialSolve::State {
     estimate.values = at;
     layout.read(estimate.x, estimate.values);
     estimate.windows = usable();
+    estimate.recordings = recordings.size();
     heading_sigma = estimate.sigma(layout.heading);
   }
 
@@ -141,6 +142,7 @@ void SequentialSolve::abandon() {
   s.linearisations.clear();
   s.problem.reset();
   if (!s.waiting && !s.recordings.empty()) s.recordings.pop_back();
+  s.heading_sigma = kPi;  // what it was found from may have been the bad one
   s.waiting.reset();
 }
 
@@ -157,7 +159,7 @@ const RunningEstimate& SequentialSolve::update(CompressedRecording part) {
     if (into.windows.size() < kEnough || into.course.end() < into.windows[kEnough - 1].t + 1.0) return s.estimate;
     // what the unit's turn-on biases are is best guessed from the last recording
     const std::size_t r = s.recordings.size();
-    if (r > 0 && s.options.bias_per_recording)
+    if (r > 0 && r < kMaxRecordings && s.options.bias_per_recording)
       s.estimate.values.recording_bias[r] = s.estimate.values.recording_bias[r - 1];
     s.linearisations.clear();
     s.problem.reset();  // it refers to the recordings

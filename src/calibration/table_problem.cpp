@@ -96,6 +96,8 @@ class PriorCost final : public ceres::CostFunction {
 TableProblem::TableProblem(const std::vector<TableRecording>& recordings, const Rig& rig, const Site& site,
                            const TableSolveOptions& options, bool running)
     : recordings_(recordings), rig_(rig), options_(options), layout_(request()) {
+  if (recordings.size() > kMaxRecordings)
+    throw Error(ExitCode::kInput, "more than " + std::to_string(kMaxRecordings) + " recordings in one run");
   start_.gravity = site.gravity;
   start_.clock_offset = options.clock_offset;
   for (std::size_t m = 0; m < kMaxMounts; ++m) start_.lever_arm[m] = rig.mount[m].lever_p;

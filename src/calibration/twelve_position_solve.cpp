@@ -3,8 +3,6 @@
 
 #include "trunnion/calibration/twelve_position_solve.hpp"
 
-#include <string>
-
 #include "table_problem.hpp"
 #include "trunnion/core/error.hpp"
 
@@ -13,8 +11,6 @@ namespace trunnion::calibration {
 Solution solve_table(const std::vector<TableRecording>& recordings, const Rig& rig, const Site& site,
                      const TableSolveOptions& options) {
   if (recordings.empty()) throw Error(ExitCode::kInput, "no recordings to solve");
-  if (recordings.size() > kMaxRecordings)
-    throw Error(ExitCode::kInput, "more than " + std::to_string(kMaxRecordings) + " recordings in one run");
   TableProblem problem(recordings, rig, site, options);
   return problem.solve();
 }

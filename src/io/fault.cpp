@@ -3,6 +3,8 @@
 
 #include "trunnion/io/fault.hpp"
 
+#include <cstdio>
+
 namespace trunnion::io {
 
 Error input_error(const std::string& file, long long line, const std::string& field, const std::string& what) {
@@ -15,6 +17,12 @@ Error input_error(const std::string& file, long long line, const std::string& fi
 Error input_error_at_byte(const std::string& file, long long byte, const std::string& field, const std::string& what) {
   return {ExitCode::kInput,
           file + ": byte " + std::to_string(byte) + (field.empty() ? "" : ": " + field) + ": " + what};
+}
+
+std::string hexadecimal(std::uint64_t value) {
+  char text[24];
+  std::snprintf(text, sizeof text, "0x%016llx", static_cast<unsigned long long>(value));
+  return text;
 }
 
 std::string printable(std::string name) {

@@ -19,6 +19,7 @@ namespace trunnion::io {
 namespace {
 
 constexpr std::size_t kBlock = std::size_t{1} << 16U;
+constexpr std::string_view kSync = "\xed\xa1\xda\x01";
 
 }  // namespace
 
@@ -39,10 +40,11 @@ LcmJournal::LcmJournal(std::string path, const std::function<void(const LcmEvent
         if (recover) recover(event);
         size_ =
             event.byte + static_cast<std::int64_t>(LcmLogReader::kHeader + event.channel.size() + event.data.size());
-        number_ = event.number + 1;
         ++recovered_;
       }
-      if (recovered_ == 0 && status.st_size > static_cast<off_t>(kBlock))
+      number_ = recovered_;
+      dropped_ = status.st_size - size_;
+      if (recovered_ == 0 && read_whole(part).compare(0, kSync.size(), kSync) != 0)
         throw input_error(part, 0, "", "is no LCM log that was begun: move it away");
       if (::ftruncate(descriptor_, size_) != 0 || ::lseek(descriptor_, size_, SEEK_SET) != size_)
         throw input_error(part, 0, "", std::string("cannot write: ") + std::strerror(errno));

@@ -27,12 +27,6 @@ constexpr double kTolerableDamage = 1e-3;   // messages that cannot be decoded, 
 constexpr double kLargestReading = 1e6;     // rad/s, m/s^2
 constexpr double kLargestAngle = 1e7;       // rad
 
-std::string hexadecimal(std::uint64_t v) {
-  char text[24];
-  std::snprintf(text, sizeof text, "0x%016llx", static_cast<unsigned long long>(v));
-  return text;
-}
-
 }  // namespace
 
 LcmDecoder::LcmDecoder(std::string source, SampleSink& sink, const LcmChannels& channels)
@@ -44,7 +38,7 @@ LcmDecoder::LcmDecoder(std::string source, SampleSink& sink, const LcmChannels& 
 void LcmDecoder::imu(const LcmEvent& event) {
   if (imu_map_) return mapped_imu(event);
   const char* p = event.data.data();
-  const std::uint64_t fingerprint = event.data.size() >= 8 ? load_u64(p) : 0;
+  const std::uint64_t fingerprint = fingerprint_of(event.data);
   InertialSample<double> sample;
   if (fingerprint == kImuFingerprint && event.data.size() == kImuBytes) {
     for (int i = 0; i < 3; ++i) {
@@ -90,7 +84,7 @@ void LcmDecoder::encoder(const LcmEvent& event) {
     return deliver_angles(event, utime, angle);
   }
   const char* p = event.data.data();
-  const std::uint64_t fingerprint = event.data.size() >= 8 ? load_u64(p) : 0;
+  const std::uint64_t fingerprint = fingerprint_of(event.data);
   if (fingerprint != kEncoderFingerprint || event.data.size() < kEncoderHead) {
     return damage(event,
                   foreign(event, fingerprint, "trunnion_lcm.encoder_t (" + hexadecimal(kEncoderFingerprint) + ")"));
@@ -213,7 +207,7 @@ LcmLosses read_lcm_recording(const std::string& path, const LcmChannels& channel
 
 bool replace_samples(const std::vector<InertialSample<double>>& samples, std::string& message) {
   const std::size_t n = samples.size();
-  const std::uint64_t fingerprint = message.size() >= kImuHead ? load_u64(message.data()) : 0;
+  const std::uint64_t fingerprint = fingerprint_of(message);
   const bool batch = fingerprint == kImuBatchFingerprint;
   if (message.size() != (batch ? kBatchHead + kBatchSample * n + 8 : kImuBytes) ||
       (!batch && fingerprint != kImuFingerprint))
@@ -274,7 +268,7 @@ std::optional<ImuCounts> decode_imu_counts(std::string_view message) {
 }
 
 double temperature_of(std::string_view message) {
-  const std::uint64_t fingerprint = message.size() >= kImuHead + 8 ? load_u64(message.data()) : 0;
+  const std::uint64_t fingerprint = message.size() >= kImuHead + 8 ? fingerprint_of(message) : 0;
   if (fingerprint != kImuFingerprint && fingerprint != kImuBatchFingerprint) return std::nan("");
   return load_double(message.data() + message.size() - 8);
 }

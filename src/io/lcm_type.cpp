@@ -235,11 +235,20 @@ const LcmStruct& LcmTypes::at(const std::string& type) const {
   return found->second;
 }
 
-std::uint64_t LcmTypes::fingerprint(const std::string& type) const { return fingerprint(type, 0); }
+std::uint64_t LcmTypes::fingerprint(const std::string& type) const {
+  std::map<std::string, std::optional<std::uint64_t>> known;
+  return fingerprint(type, known);
+}
 
-std::uint64_t LcmTypes::fingerprint(const std::string& type, int depth) const {
+std::uint64_t LcmTypes::fingerprint(const std::string& type,
+                                    std::map<std::string, std::optional<std::uint64_t>>& known) const {
   const LcmStruct& s = at(type);
-  if (depth > kDeepest) throw input_error(s.file, s.line, type, "contains itself");
+  const auto found = known.find(type);
+  if (found != known.end()) {
+    if (!found->second) throw input_error(s.file, s.line, type, "contains itself");
+    return *found->second;
+  }
+  known[type] = std::nullopt;
   std::uint64_t h = 0x12345678U;
   for (const LcmMember& member : s.members) {
     h = stir(h, member.name);
@@ -251,9 +260,10 @@ std::uint64_t LcmTypes::fingerprint(const std::string& type, int depth) const {
     }
   }
   for (const LcmMember& member : s.members) {
-    if (!is_primitive(member.type)) h += fingerprint(member.type, depth + 1);
+    if (!is_primitive(member.type)) h += fingerprint(member.type, known);
   }
-  return (h << 1U) | (h >> 63U);
+  known[type] = (h << 1U) | (h >> 63U);
+  return *known[type];
 }
 
 std::vector<std::string> LcmTypes::with_fingerprint(std::uint64_t fingerprint) const {
@@ -267,6 +277,8 @@ std::vector<std::string> LcmTypes::with_fingerprint(std::uint64_t fingerprint) c
   }
   return found;
 }
+
+std::uint64_t fingerprint_of(std::string_view message) { return message.size() >= 8 ? load_u64(message.data()) : 0; }
 
 std::vector<std::string> LcmTypes::names() const {
   std::vector<std::string> names;
@@ -488,7 +500,7 @@ bool LcmFieldReader::read(std::string_view message) {
     field.text.clear();
   }
   turns_left_.clear();
-  if (message.size() < 8 || load_u64(message.data()) != fingerprint_) return false;
+  if (message.size() < 8 || fingerprint_of(message) != fingerprint_) return false;
   const char* p = message.data() + 8;
   const char* const end = message.data() + message.size();
   const auto left = [&] { return static_cast<std::size_t>(end - p); };

@@ -11,6 +11,7 @@
 #include "trunnion/core/units.hpp"
 #include "trunnion/io/csv.hpp"
 #include "trunnion/io/fault.hpp"
+#include "trunnion/positions/channel_clock.hpp"
 
 namespace trunnion::io {
 namespace {
@@ -59,6 +60,11 @@ MappedMessages::MappedMessages(std::shared_ptr<const MessageMap> map, const Sens
     const bool text = reader_.kind(i) == LcmFieldReader::Kind::kText;
     if (text != (!map_->joint_names.empty() && i == names_))
       throw Error(ExitCode::kInput, "field '" + paths[i] + "' of " + map_->type + (text ? " is text" : " is no text"));
+  }
+  for (std::size_t i = 0; map_->clock == MessageMap::Clock::kSecondsAndNanoseconds && i < 2; ++i) {
+    if (reader_.kind(i) != LcmFieldReader::Kind::kInteger)
+      throw Error(ExitCode::kInput, "field '" + paths[i] + "' of " + map_->type +
+                                        " is no integer: {field:, unit: s} reads seconds with a fraction");
   }
   if (sequence_ < paths.size() && reader_.kind(sequence_) != LcmFieldReader::Kind::kInteger)
     throw Error(ExitCode::kInput, "field '" + map_->sequence + "' of " + map_->type + " is no integer");
@@ -166,7 +172,8 @@ std::string MappedMessages::imu(const LcmEvent& event, std::vector<Sample>& samp
     const std::string wrong = time_of(event, stamps == n ? k : 0, sample.utime);
     if (!wrong.empty()) return wrong;
     if (stamps != n)
-      sample.utime -= static_cast<std::int64_t>(std::llround(1e6 * period_ * static_cast<double>(n - 1 - k)));
+      sample.utime =
+          ChannelClock::difference(sample.utime, std::llround(1e6 * period_ * static_cast<double>(n - 1 - k)));
     if (numbers == n) {
       sample.sequence = reader_.integers(sequence_)[k];
     } else if (numbers > 0) {
@@ -182,6 +189,7 @@ std::string MappedMessages::encoder(const LcmEvent& event, std::int64_t& utime, 
                                     std::array<double, 2>& angle) {
   if (!reader_.read(event.data)) return "is no whole message of type " + map_->type;
   if (map_->clock != MessageMap::Clock::kLog && count(0) == 0) return "has no stamp";
+  if (map_->clock == MessageMap::Clock::kSecondsAndNanoseconds && count(1) == 0) return "has no stamp";
   const std::string wrong = time_of(event, 0, utime);
   if (!wrong.empty()) return wrong;
   for (std::size_t i = 0; i < 2; ++i) {

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <limits>
 
 #include "matchers/refuses.hpp"
 #include "matchers/temporary_folder.hpp"
@@ -127,7 +128,6 @@ TEST_F(ReplayTest, ThroughTheBusALogIsWhatItIsInTheFile) {
   options.speed = 0.0;
   options.published = [&](const io::LcmEvent&) {
     while (bus.handle(0)) continue;
-    return true;
   };
   const ReplayFigures figures = replay(log, bus, options);
   EXPECT_EQ(figures.messages, 600);
@@ -150,6 +150,19 @@ TEST_F(ReplayTest, PlaysThePartAndTheChannelsThatAreChosen) {
   EXPECT_EQ(replay(log, bus, options).messages, 51);
   while (bus.handle(0)) continue;
   EXPECT_EQ(received.channels, std::vector<std::string>(51, "ENCODER"));
+}
+
+TEST_F(ReplayTest, EndsInAPauseWhenItIsTold) {
+  io::LcmLogWriter gap(folder_ / "gap.lcm");
+  gap.write(0, "A", "m");
+  gap.write(std::numeric_limits<std::int64_t>::max(), "A", "m");  // in 292,000 years
+  gap.commit();
+  Connection bus(kMemory);
+  io::LcmLogReader log(folder_ / "gap.lcm");
+  ReplayOptions options;
+  int asked = 0;
+  options.goes_on = [&] { return ++asked < 3; };
+  EXPECT_EQ(replay(log, bus, options).messages, 1);
 }
 
 TEST_F(ReplayTest, KeepsThePace) {

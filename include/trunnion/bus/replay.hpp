@@ -23,8 +23,10 @@ struct ReplayOptions {
   double start = 0.0;  ///< s after the first event of the log
   double end = std::numeric_limits<double>::infinity();
   std::function<bool(std::string_view channel)> chosen;  ///< empty: all
-  /// Called after each message; false ends the replay. On memq: where the subscribers are served.
-  std::function<bool(const io::LcmEvent&)> published;
+  /// Called after each message. On memq: where the subscribers are served.
+  std::function<void(const io::LcmEvent&)> published;
+  /// Asked after each message and every 0.1 s of a pause; false ends the replay.
+  std::function<bool()> goes_on;
 };
 
 struct ReplayFigures {

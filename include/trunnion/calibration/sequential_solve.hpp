@@ -3,13 +3,13 @@
 /// @file
 /// The running estimate of a calibration that is being recorded: the problem of the batch solve, in information form.
 ///
-///   N_k = N_k-1 + sum of the new windows' J^T J,   b_k likewise,   x_k = x_0 - (N_k + P)^-1 (b_k + P (x_0 - m))    ...
-///   (1)
+///   N_k = N_k-1 + sum of the new windows' J^T J,   b_k likewise with r
+///   x_k = x_0 - (N_k + P)^-1 (b_k + P (x_0 - m))                                                          ... (1)
 ///
 /// Residuals and Jacobians are taken at x_0, so that a window is looked at once. When x_k has left x_0 by half a sigma,
-/// the last windows do not fit, or the data have grown by a third, all windows are linearised anew from the estimate. P and m are priors as wide as
-/// an instrument can be wrong: what the data do not tell yet has a sigma as wide as that. The estimate leads the
-/// operator; the calibration itself is solve_table() of the same windows.
+/// the last windows do not fit, or the data have grown by a third, all windows are linearised anew from the estimate.
+/// P and m are priors as wide as an instrument can be wrong: what the data do not tell yet has a sigma as wide as that.
+/// The estimate leads the operator; the calibration itself is solve_table() of the same windows.
 /// Bierman, Factorization Methods for Discrete Sequential Estimation, ch. II; docs/theory/calibration.md, eq. 33.
 
 #pragma once
@@ -29,8 +29,9 @@ struct RunningEstimate {
   Eigen::VectorXd sigma;  ///< SI; of what the data do not tell yet that of its wide prior
   CalibrationValues values;
   std::size_t windows = 0;
-  double chi_square = 0.0;  ///< reduced, of the last windows at the last linearisation, which knows them; 0: too few
-  int linearisations = 0;   ///< since the beginning
+  std::size_t recordings = 0;  ///< that are in it
+  double chi_square = 0.0;     ///< reduced, of the last windows at the last linearisation, which knows them; 0: too few
+  int linearisations = 0;      ///< since the beginning
 };
 
 class SequentialSolve {

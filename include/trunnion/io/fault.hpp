@@ -5,6 +5,7 @@
 
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "trunnion/core/error.hpp"
@@ -16,6 +17,9 @@ Error input_error(const std::string& file, long long line, const std::string& fi
 
 /// The same for binary files, at a byte offset.
 Error input_error_at_byte(const std::string& file, long long byte, const std::string& field, const std::string& what);
+
+/// A fingerprint as people quote it: "0x12aff17a21db298c".
+std::string hexadecimal(std::uint64_t value);
 
 /// A name from a file as it may reach a terminal: control bytes become '?'.
 std::string printable(std::string name);

@@ -4,6 +4,7 @@
 /// An LCM log that is being recorded: what was written survives the program, and can be read back and gone on with.
 ///
 /// The log grows as "<path>.part" and gets its name when it is whole. A record that was cut off at the end is dropped.
+/// A file that holds no record is nobody's journal and is refused.
 
 #pragma once
 
@@ -38,6 +39,8 @@ class LcmJournal {
   [[nodiscard]] const std::string& failure() const { return failure_; }
   [[nodiscard]] long long records() const { return number_; }
   [[nodiscard]] long long recovered() const { return recovered_; }
+  /// Bytes after the last whole record that were found and dropped.
+  [[nodiscard]] long long dropped() const { return dropped_; }
 
   /// The log gets its name. @return its SHA-256; empty where something failed, and the journal stays
   std::string finish();
@@ -53,6 +56,7 @@ class LcmJournal {
   int descriptor_ = -1;
   std::int64_t number_ = 0;
   std::int64_t recovered_ = 0;
+  long long dropped_ = 0;
   std::int64_t size_ = 0;  // of whole records in the file
 };
 

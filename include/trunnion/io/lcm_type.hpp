@@ -14,6 +14,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -60,9 +61,13 @@ class LcmTypes {
   [[nodiscard]] std::vector<std::string> names() const;
 
  private:
-  [[nodiscard]] std::uint64_t fingerprint(const std::string& type, int depth) const;
+  /// @param known what was computed already; nothing for a type that is being computed
+  std::uint64_t fingerprint(const std::string& type, std::map<std::string, std::optional<std::uint64_t>>& known) const;
   std::map<std::string, LcmStruct> types_;
 };
+
+/// The fingerprint that a message begins with; zero for one that is too short.
+std::uint64_t fingerprint_of(std::string_view message);
 
 /// Takes the fields at some paths out of messages of one type. A path goes through nested types and arrays of them:
 /// "header.stamp.sec", "raw_imu.delta_rotation" (all of them, in order), "omega[2]" (one of an array).
