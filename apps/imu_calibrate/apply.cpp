@@ -129,7 +129,8 @@ void apply(const Options& o) {
   } else {
     CorrectorOptions options;
     options.calibration = o.calibration;
-    options.sheet = run.sheet_path;
+    if (run.sheet.counts.gyro.scale != 1.0 && run.sheet.counts.accel.scale != 1.0) options.sheet = run.sheet_path;
+    options.bits = 30;  // whatever the register: in floating point nothing overflows
     options.recording = o.recording;
     options.in_floating_point = true;
     samples = apply_to_log(files, run.channels, o.output, Corrector(options));

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <memory>
 
+#include "../imu_correct/corrector.hpp"
 #include "../terminal.hpp"
 #include "command.hpp"
 #include "recordings.hpp"
@@ -162,23 +163,7 @@ void hold_against_sheet(const io::CalibrationFile& file, const io::SensorSheet& 
     std::fprintf(stderr, "%s: is a sheet of %s, the calibration is of %s\n", o.sheet.c_str(),
                  io::printable(sheet.model).c_str(), io::printable(file.model).c_str());
   }
-  const double full_scale = std::ldexp(1.0, o.bits - 1);
-  const auto hold = [&](const char* key, const NominalScale<double>& counts, double range, double most) {
-    const double reach = full_scale / std::abs(counts.scale);
-    if (reach > most) {
-      throw io::input_error(o.sheet, 0, key,
-                            "of " + figure(counts.scale, 6) + " makes " + std::to_string(o.bits) + " bits reach to " +
-                                figure(reach, 3) + ": no raw counts; a sheet of a unit that reads in SI has none");
-    }
-    const double counted = range * std::abs(counts.scale) + std::abs(counts.zero);
-    if (counted > 1.001 * full_scale || std::abs(counts.zero) >= full_scale) {
-      throw io::input_error(o.sheet, 0, key,
-                            "and the range make " + figure(counted, 6) + " counts, with the zero: more than --bits " +
-                                std::to_string(o.bits) + " hold (an unsigned register needs one bit more)");
-    }
-  };
-  hold("scale_counts_per_rad_s", sheet.counts.gyro, sheet.gyro_range, 1000.0);
-  hold("scale_counts_per_m_s2", sheet.counts.accel, sheet.accel_range, 1e5);
+  check_counts(sheet, o.sheet, o.bits);
 }
 
 /// What count_calibration() refuses, in words.

@@ -139,7 +139,7 @@ class InspectSink final : public SampleSink {
   void encoder(std::int64_t utime, double azimuth, double pitch) override { encoder_.add(utime, {azimuth, pitch}); }
 
   Json summary() {
-    Json json;
+    Json json = Json::object();
     if (!imu_.empty()) {
       json["imu"] = imu_.summary({"gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z"}, 1.0, "rad/s, m/s^2");
       try {
@@ -234,6 +234,7 @@ ExitCode inspect(const Options& o) {
     run.recordings.push_back(files);
   }
   io::LcmTypes types = *io::known_types();
+  for (const std::string& path : run.lcm_types) types.add(path);
   for (const std::string& path : o.lcm_types) types.add(path);
   ProgressLine progress;
   Json all = {{"schema", "trunnion/inspect/1"}};

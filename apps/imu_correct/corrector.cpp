@@ -7,6 +7,7 @@
 #include <cstring>
 #include <limits>
 
+#include "../terminal.hpp"
 #include "trunnion/core/error.hpp"
 #include "trunnion/error_model/flash_block.hpp"
 #include "trunnion/io/calibration_file.hpp"
@@ -17,6 +18,7 @@
 namespace trunnion::app {
 namespace {
 
+constexpr double kNear = 0.3;              // of one: no unit's scale errs by as much
 constexpr double kTolerableDamage = 1e-3;  // messages that are left out, against samples
 constexpr std::int32_t kNoTemperature = std::numeric_limits<std::int32_t>::min();
 
@@ -27,12 +29,36 @@ InertialSample<float> narrow(const InertialSample<double>& s) { return {s.w.cast
 
 }  // namespace
 
+void check_counts(const io::SensorSheet& sheet, const std::string& path, int bits) {
+  const double full_scale = std::ldexp(1.0, bits - 1);
+  const auto hold = [&](const char* key, const NominalScale<double>& counts, double range, double most) {
+    const double reach = full_scale / std::abs(counts.scale);
+    if (reach > most) {
+      throw io::input_error(path, 0, key,
+                            "of " + figure(counts.scale, 6) + " makes " + std::to_string(bits) + " bits reach to " +
+                                figure(reach, 3) + ": no raw counts; a sheet of a unit that reads in SI has none");
+    }
+    const double counted = range * std::abs(counts.scale) + std::abs(counts.zero);
+    if (counted > 1.001 * full_scale || std::abs(counts.zero) >= full_scale) {
+      throw io::input_error(path, 0, key,
+                            "and the range make " + figure(counted, 6) + " counts, with the zero: more than --bits " +
+                                std::to_string(bits) + " hold (an unsigned register needs one bit more)");
+    }
+  };
+  hold("scale_counts_per_rad_s", sheet.counts.gyro, sheet.gyro_range, 1000.0);
+  hold("scale_counts_per_m_s2", sheet.counts.accel, sheet.accel_range, 1e5);
+}
+
 Corrector::Corrector(const CorrectorOptions& options) {
   UnitScale<double> scale;
-  if (!options.sheet.empty()) scale = io::read_sensor_sheet(options.sheet).counts;
+  if (!options.sheet.empty()) {
+    const io::SensorSheet sheet = io::read_sensor_sheet(options.sheet);
+    check_counts(sheet, options.sheet, options.bits);
+    scale = sheet.counts;
+  }
   int fraction = options.fraction;
   if (is_block(options.calibration)) {
-    read_block(options);
+    read_block(options, scale);
     if (integers_) fraction = integers_->shift - 2;
   } else {
     const InertialUnit<double> unit =
@@ -56,7 +82,7 @@ Corrector::Corrector(const CorrectorOptions& options) {
   accel_out_ = 1.0 / (scale.accel.scale * std::ldexp(1.0, fraction));
 }
 
-void Corrector::read_block(const CorrectorOptions& options) {
+void Corrector::read_block(const CorrectorOptions& options, const UnitScale<double>& scale) {
   const std::string bytes = io::read_whole(options.calibration, sizeof(FlashBlock));
   alignas(8) unsigned char memory[sizeof(FlashBlock)] = {};
   std::memcpy(memory, bytes.data(), std::min(bytes.size(), sizeof memory));
@@ -64,12 +90,23 @@ void Corrector::read_block(const CorrectorOptions& options) {
   if (!read.ok()) throw io::input_error(options.calibration, 0, "", "is no whole block of this version");
   const FlashBlock& block = *read.value();
   thermal_ = true;
+  if (options.recording > 0)
+    throw Error(ExitCode::kUsage, options.calibration + ": a block has one turn-on bias: leave --recording out");
   if (block.has_counts == 0) {
+    if (!options.sheet.empty())
+      throw Error(ExitCode::kUsage, options.calibration + ": is a block for readings in SI: leave --sheet out");
     si_float_.emplace(block.unit);
     return;
   }
   if (options.sheet.empty())
     throw io::input_error(options.calibration, 0, "", "is for raw counts: --sheet says what one is");
+  // the scale is folded into the block: it is near that of the sheet it was made with
+  const auto near = [](float folded, double counts) {
+    return std::abs(static_cast<double>(folded) * counts - 1.0) < kNear;
+  };
+  if (!near(block.unit.gyro.A.x.x, scale.gyro.scale) || !near(block.unit.accel.A.x.x, scale.accel.scale))
+    throw io::input_error(options.sheet, 0, "",
+                          "is not the sheet that " + options.calibration + " was made with: its counts are others");
   if (block.has_counts == 1 && !options.in_floating_point) {
     integers_ = std::make_unique<CountCoefficients>(block.counts);
   } else {

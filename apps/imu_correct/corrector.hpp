@@ -14,6 +14,7 @@
 #include "trunnion/error_model/count_correction.hpp"
 #include "trunnion/error_model/inertial_unit.hpp"
 #include "trunnion/io/lcm_recording.hpp"
+#include "trunnion/io/sensor_sheet.hpp"
 
 namespace trunnion::app {
 
@@ -25,6 +26,10 @@ struct CorrectorOptions {
   int fraction = 6;
   bool in_floating_point = false;  ///< raw counts too
 };
+
+/// Whether the sheet's counts can be those of a register of @p bits.
+/// @throws Error (input) for a scale that makes no raw counts, or a range that the register does not hold
+void check_counts(const io::SensorSheet& sheet, const std::string& path, int bits);
 
 /// One calibration, ready to correct. Not changed: a new file makes a new one.
 class Corrector {
@@ -43,7 +48,7 @@ class Corrector {
   [[nodiscard]] const char* path() const;
 
  private:
-  void read_block(const CorrectorOptions& options);
+  void read_block(const CorrectorOptions& options, const UnitScale<double>& scale);
 
   std::optional<UnitCorrection<double>> si_;
   std::optional<UnitCorrection<float>> si_float_;  // of a block

@@ -224,10 +224,14 @@ void Estimator::show_plan() {
                                     [](const io::EntryVerdict& limit) { return limit.sigma >= 0.0; });
     const bool certain = stated && !s.entries.empty() && s.within == static_cast<int>(s.entries.size()) &&
                          solve_.estimate().recordings == static_cast<std::size_t>(s.recordings);
-    s.enough = next < 0 || certain;
+    const bool last = s.recording == s.recordings;
+    s.enough = certain || (next < 0 && !(stated && last));
     if (s.phase != Phase::kRecording) return;
     if (s.enough) {
-      s.guidance = "enough of " + s.mount + ": press Enter to end it";
+      s.guidance = "enough of " + s.mount + (s.unattended ? "" : ": press Enter to end it");
+    } else if (next < 0) {
+      s.guidance = "the plan is done, and " + std::to_string(static_cast<int>(s.entries.size()) - s.within) +
+                   " sigmas are above their limits: go on turning, or press Enter";
     } else {
       const PlanStep& step = plan_[next];
       s.guidance = text_of(step) + ": " + figure(std::floor(step.seen), 4) + " of " + figure(step.seconds, 4) + " s";

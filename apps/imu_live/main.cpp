@@ -83,10 +83,11 @@ class Words {
 
 ExitCode live(const Options& o, SharedState& state) {
   const io::RunFile run = io::read_run_file(o.run);
-  if (run.rig.empty()) throw Error(ExitCode::kUsage, o.run + ": has no rig: live calibration is for a table");
+  if (run.rig.empty()) throw Error(ExitCode::kInput, o.run + ": has no rig: live calibration is for a table");
   keep_inputs(o.output, files_of(run));
   const std::vector<std::string> mounts = mounts_of(run);
   const io::RigFile rig = io::read_rig(run.rig, run.outer_axis, run.inner_axis, mounts);
+  if (o.output.empty()) std::fprintf(stderr, "without -o the calibration is printed and not written\n");
   if (!o.output.empty()) io::WholeFile(o.output);  // can it be written? Better known now than at the end
   bus::Connection connection(o.url);
   Session session(run, rig, mounts, connection, state, o.session);

@@ -25,6 +25,7 @@ constexpr auto kWatchEvery = milliseconds(50);
 constexpr auto kFlushEvery = milliseconds(10);
 constexpr auto kShowEvery = milliseconds(500);
 constexpr auto kEstimateEvery = milliseconds(500);
+constexpr long long kStraysOfAGap = 2;  // the first stamp of a channel after a silence is not trusted yet
 constexpr double kSilent = 1.0;         // s
 constexpr double kWorthKeeping = 10.0;  // s of a recording that was interrupted
 
@@ -60,18 +61,23 @@ Session::Session(const io::RunFile& run, const io::RigFile& rig, const std::vect
     if (!files.lcm.empty() && !std::filesystem::exists(files.lcm, error) &&
         ::access(folder.empty() ? "." : folder.c_str(), W_OK) != 0)
       throw io::input_error(files.lcm, 0, "", std::string("cannot write: ") + std::strerror(errno));
+    for (const io::RecordingFiles& other : run.recordings) {
+      if (&other != &files && other.lcm == files.lcm && !files.lcm.empty())
+        throw Error(ExitCode::kInput, run.path + ": two recordings have the log " + files.lcm);
+    }
     if (files.lcm.empty() || files.mount.empty())
-      throw Error(ExitCode::kUsage, run.path +
+      throw Error(ExitCode::kInput, run.path +
                                         ": a live calibration records LCM logs on a rig: each recording needs a "
                                         "mount and a log");
   }
   state_.change([&](LiveState& s) {
     s.recordings = static_cast<int>(run_.recordings.size());
     s.model = run_.sheet.model;
+    s.unattended = options_.unattended;
   });
   connection_.subscribe(run_.channels.imu.name, &Session::on_imu, *this);
   if (run_.channels.encoder.name == run_.channels.imu.name)
-    throw Error(ExitCode::kUsage, run.path + ": the unit and the encoders have the same channel");
+    throw Error(ExitCode::kInput, run.path + ": the unit and the encoders have the same channel");
   connection_.subscribe(run_.channels.encoder.name, &Session::on_encoder, *this);
   load_or_wait();
 }
@@ -281,9 +287,18 @@ void Session::finish_recording() {
                       recording.data.windows.end());
   estimator_.add(std::move(part));
   show_figures();
-  add_notice(state_, files.mount + " is recorded: " + std::to_string(recording.data.figures.samples) + " samples, " +
-                         std::to_string(decoder_->imu_sequence().numbered() ? decoder_->imu_sequence().lost() : 0) +
-                         " lost on the way, " + std::to_string(recording.data.figures.missing) + " holes in time");
+  const SequenceWatch& sequence = decoder_->imu_sequence();
+  add_notice(state_, files.mount + " is recorded: " + std::to_string(decoder_->samples()) + " samples, " +
+                         std::to_string(sequence.numbered() ? sequence.lost() : 0) + " lost on the way, " +
+                         std::to_string(recording.data.figures.missing) + " missing between their stamps");
+  const LiveState seen = state_.copy();
+  const auto open = std::count_if(seen.steps.begin(), seen.steps.end(),
+                                  [](const LiveState::Step& step) { return step.seen < step.asked; });
+  if (open > 0 && !seen.enough) {
+    add_notice(state_, std::to_string(open) + " of " + std::to_string(seen.steps.size()) +
+                           " steps of its plan were not seen; to record " + files.mount +
+                           " again, start anew without " + files.lcm);
+  }
   recording_ = false;
   recordings_.push_back(std::move(recording));
   load_or_wait();
@@ -339,10 +354,16 @@ void Session::watch() {
       say_once(said_journal_, "nothing more is recorded: " + journal_->failure() + "; the calibration goes on");
   }
   if (recording_) {
-    watch_channel("the unit", imu_, silent(imu_));
-    watch_channel("the encoders", encoder_, silent(encoder_));
+    // unattended both are silent where a mount ends
+    const bool both = options_.unattended && silent(imu_) > kSilent && silent(encoder_) > kSilent;
+    if (!both || silent(imu_) > options_.silence + kSilent) {
+      watch_channel("the unit", imu_, silent(imu_));
+      watch_channel("the encoders", encoder_, silent(encoder_));
+    }
     const long long strays = compressor_->strays();
-    if (strays > 2 * said_strays_) {  // not each: a clock that keeps jumping would leave no room for anything else
+    if (strays > 2 * said_strays_ + kStraysOfAGap &&
+        !decoder_->imu_sequence()
+             .two_publishers()) {  // not each: a clock that keeps jumping would leave no room for anything else
       add_notice(state_, "a clock jumped: " + std::to_string(strays) + " stamps out of their order are left out");
       said_strays_ = strays;
     }

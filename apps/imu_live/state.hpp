@@ -57,7 +57,8 @@ struct LiveState {
   int recording = 0;  ///< from 1
   int recordings = 0;
   std::string guidance;
-  bool enough = false;  ///< the plan is done, or every sigma is within its limit
+  bool unattended = false;
+  bool enough = false;  ///< every sigma is within its limit, where limits are stated; else the plan is done
   std::vector<Step> steps;
   std::vector<Entry> entries;
   int within = 0;         ///< entries with a sigma within the limit

@@ -85,13 +85,15 @@ ExitCode run_replay(std::vector<std::string> arguments) {
   Options o;
   app.add_option("log", o.log, "LCM log")->required();
   app.add_option("-l,--lcm-url", o.url, "Bus; default LCM_DEFAULT_URL, or LCM's own");
-  app.add_option("-s,--speed", o.speed, "Times the recorded pace; 0 or less: without pauses")->capture_default_str();
+  app.add_option("-s,--speed", o.speed, "Times the recorded pace; 0 or less: without pauses")
+      ->capture_default_str()
+      ->check(CLI::Range(-1e9, 1e9));
   app.add_option("-e,--regexp", o.pattern, "Only channels that this regular expression matches as a whole");
   app.add_option("-c,--channel", o.channels, "Only this channel; may be given again");
   app.add_option("--start", o.start, "Seconds after the first event to begin at")
       ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
-  app.add_option("--end", o.end, "Seconds after the first event to end at")->check(CLI::NonNegativeNumber);
+      ->check(CLI::Range(0.0, 1e12));
+  app.add_option("--end", o.end, "Seconds after the first event to end at")->check(CLI::Range(0.0, 1e12));
   app.add_flag("--lossless", o.lossless, "As fast as the subscribers keep up: over tcpq, which waits for them");
   app.add_flag("-v,--verbose", o.verbose, "Print time, channel and size of each message");
   app.footer("Example:\n  imu_replay position_1.lcm --speed 4 --channel IMU --channel ENCODER");

@@ -50,6 +50,10 @@ void LcmDecoder::imu(const LcmEvent& event) {
   } else if (fingerprint == kImuBatchFingerprint && event.data.size() >= kBatchHead) {
     batch(event);
   } else if (const auto raw = decode_imu_counts(event.data)) {
+    if (counts_.gyro.scale == 1.0 || counts_.accel.scale == 1.0)
+      return damage(event, fault(event, "channel " + printable(std::string(event.channel)),
+                                 "holds raw counts, and no sheet says what one is (scale_counts_per_rad_s, "
+                                 "scale_counts_per_m_s2)"));
     for (std::size_t i = 0; i < 3; ++i) {
       sample.w(static_cast<int>(i)) = (raw->counts[i] - counts_.gyro.zero) / counts_.gyro.scale;
       sample.f(static_cast<int>(i)) = (raw->counts[i + 3] - counts_.accel.zero) / counts_.accel.scale;

@@ -11,6 +11,7 @@
 #include "channel_yaml.hpp"
 #include "strict_yaml.hpp"
 #include "trunnion/core/earth.hpp"
+#include "trunnion/core/error.hpp"
 #include "trunnion/core/units.hpp"
 
 namespace trunnion::io {
@@ -177,7 +178,14 @@ RunFile read_run_file(const std::string& path) {
   const auto types = std::make_shared<LcmTypes>();
   if (root.has("lcm_types")) {
     const StrictYaml folders = root.at("lcm_types");
-    for (std::size_t i = 0; i < folders.length(); ++i) types->add(beside(path, folders.at(i).text()));
+    for (std::size_t i = 0; i < folders.length(); ++i) {
+      run.lcm_types.push_back(beside(path, folders.at(i).text()));
+      try {
+        types->add(run.lcm_types.back());
+      } catch (const Error& e) {
+        folders.at(i).fail(e.what());
+      }
+    }
   }
   run.channels.sheet = run.sheet;
   if (root.has("channels")) {

@@ -83,7 +83,8 @@ TEST_F(LiveSession, WaitsForTheOperatorAndLeadsThroughTheMounts) {
   EXPECT_NEAR(s.duration, 19.0, 0.1);
   EXPECT_TRUE(live.press());
   EXPECT_EQ(live.state.copy().guidance, "change to mount_2, press Enter");
-  EXPECT_THAT(live.notices(), HasSubstr("mount_1 is recorded: 7600 samples, 0 lost on the way, 0 holes in time"));
+  EXPECT_THAT(live.notices(),
+              HasSubstr("mount_1 is recorded: 7600 samples, 0 lost on the way, 0 missing between their stamps"));
 }
 
 TEST_F(LiveSession, AKilledSessionGoesOnToTheSameBits) {
@@ -338,6 +339,68 @@ TEST_F(LiveSession, AFullDiskLosesTheRecordingAndNotTheCalibration) {
   EXPECT_TRUE(live.session.inputs().digests.empty());
 }
 
+TEST_F(LiveSession, SaysThatAChannelNeverCame) {
+  LiveRun live(bench_);
+  live.press();
+  std::vector<BusMessage> imu_only;
+  for (const BusMessage& m : part(0, 0.0, 3.0)) {
+    if (m.channel == "IMU") imu_only.push_back(m);
+  }
+  for (int i = 0; i < 12; ++i) {
+    live.publish({imu_only.begin() + 100 * i, imu_only.begin() + 100 * (i + 1)});
+    live.idle(0.1);
+  }
+  EXPECT_THAT(live.notices(), HasSubstr("lost channel: no message of the encoders for"));
+}
+
+// A stream that is not what the run says ends the program, once: what it left does not end the next one.
+TEST_F(LiveSession, AWrongStreamIsRefusedAndLeavesNothingBehind) {
+  std::vector<BusMessage> slow;
+  int n = 0;
+  for (const BusMessage& m : part(0, 0.0, 4.0)) {
+    if (m.channel != "IMU" || ++n % 2 == 0) slow.push_back(m);
+  }
+  {
+    LiveRun live(bench_);
+    live.press();
+    EXPECT_REFUSES(ExitCode::kInput, "the sheet's rate_hz says 400", live.publish(slow));
+  }
+  LiveRun live(bench_);
+  EXPECT_EQ(live.state.copy().phase, Phase::kWaiting);
+  live.press();
+  live.publish(part(0, 0.0, 4.0));
+  live.press();
+  EXPECT_EQ(live.session.recordings().size(), 1U);
+}
+
+TEST_F(LiveSession, AJournalThatCannotBeGoneOnWithIsSetAside) {
+  {
+    LiveRun live(bench_);
+    live.press();
+    live.publish(part(0, 0.0, 0.4));  // too little to know the period from
+    live.idle(0.1);
+  }
+  std::vector<BusMessage> later = part(0, 0.4, 20.0);
+  for (BusMessage& m : later) put(m.data, kUtime, number_at(m.data, kUtime) + 3600000000);
+  LiveRun live(bench_);
+  EXPECT_THAT(live.notices(), HasSubstr("going on with mount_1"));
+  live.publish(later);
+  EXPECT_THAT(live.notices(), HasSubstr("the recording of mount_1 begins again"));
+  live.press();
+  EXPECT_NEAR(live.session.recordings().at(0).data.figures.duration, 19.5, 0.3);
+}
+
+TEST_F(LiveSession, RefusesMoreRecordingsThanACalibrationHolds) {
+  io::RunFile many = bench_.run;
+  for (int i = 3; i <= kMaxRecordings; ++i) {
+    many.recordings.push_back(many.recordings[0]);
+    many.recordings.back().lcm += std::to_string(i);
+  }
+  bus::Connection bus("memq://");
+  SharedState state;
+  EXPECT_REFUSES(ExitCode::kInput, "more than 32 recordings", Session(many, bench_.rig, bench_.mounts, bus, state, {}));
+}
+
 TEST_F(LiveSession, AMountThatIsEndedTooSoonIsRecordedAgain) {
   LiveRun live(bench_);
   live.press();
@@ -353,11 +416,11 @@ TEST_F(LiveSession, RefusesARunThatCannotBeRecorded) {
   hand.recordings[1].mount.clear();
   bus::Connection bus("memq://");
   SharedState state;
-  EXPECT_REFUSES(ExitCode::kUsage, "each recording needs a mount and a log",
+  EXPECT_REFUSES(ExitCode::kInput, "each recording needs a mount and a log",
                  Session(hand, bench_.rig, bench_.mounts, bus, state, {}));
   io::RunFile one = bench_.run;
   one.channels.encoder.name = "IMU";
-  EXPECT_REFUSES(ExitCode::kUsage, "have the same channel", Session(one, bench_.rig, bench_.mounts, bus, state, {}));
+  EXPECT_REFUSES(ExitCode::kInput, "have the same channel", Session(one, bench_.rig, bench_.mounts, bus, state, {}));
 }
 
 }  // namespace

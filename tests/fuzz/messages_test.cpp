@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <limits>
 
 #include "fuzz/mutate.hpp"
 #include "io/message_bytes.hpp"
@@ -63,8 +64,39 @@ std::vector<Target> targets() {
   own(true, message);
   encode_imu_counts({1, 2, {3, 4, 5, 6, 7, 8}, 9}, message);
   own(true, message);
+  all.back().channels.sheet.counts.gyro.scale = all.back().channels.sheet.counts.accel.scale = 100.0;
   encode_encoder(1, 2, 0.5, 0.25, message);
   own(false, message);
+  // a house whose time is split, in arrays that may be empty
+  const auto split = std::make_shared<MessageMap>();
+  const auto types = std::make_shared<LcmTypes>();
+  types->add_text(
+      "struct t { int8_t n; int32_t sec[n]; int8_t m; int32_t nsec[m]; double a[2]; double w[3], f[3]; int64_t stamp; "
+      "}",
+      "t");
+  split->types = types;
+  split->type = "t";
+  split->clock = MessageMap::Clock::kSecondsAndNanoseconds;
+  split->time = {{"sec", "nsec"}, "s"};
+  split->angle = {{"a"}, "rad"};
+  MessageBytes seconds(types->fingerprint("t"));
+  seconds.i8(1).i32(5).i8(1).i32(6);
+  for (int i = 0; i < 8; ++i) seconds.f64(0.5);
+  seconds.i64(std::numeric_limits<std::int64_t>::min());
+  Target encoders;
+  encoders.imu = false;
+  encoders.channels.encoder = {"X", split};
+  encoders.seed = seconds.bytes();
+  all.push_back(encoders);
+  const auto units = std::make_shared<MessageMap>(*split);
+  units->angle = {};
+  units->gyro = {{"w"}, "rad/s"};
+  units->accel = {{"f"}, "m/s^2"};
+  Target unit = encoders;
+  unit.imu = true;
+  unit.channels.imu = {"X", units};
+  unit.channels.encoder.map = nullptr;
+  all.push_back(unit);
   for (const MessagePreset& preset : message_presets()) {
     Target target;
     const auto map = std::make_shared<const MessageMap>(preset.map);

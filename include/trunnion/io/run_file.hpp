@@ -55,6 +55,7 @@ struct RunFile {
   EntryLimits refuse_above = default_refuse_above();
   std::array<EntryVerdict, kEntries> limits;
   LcmChannels channels;
+  std::vector<std::string> lcm_types;  ///< definitions, files or folders
   ColumnMap columns;
   PlanRequest plan;  ///< what a live calibration asks of each mount
   std::vector<RecordingFiles> recordings;
