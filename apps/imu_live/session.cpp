@@ -42,7 +42,6 @@ calibration::CompressOptions compress_options(const io::RunFile& run, const io::
 Session::Session(const io::RunFile& run, const io::RigFile& rig, const std::vector<std::string>& mounts,
                  bus::Connection& connection, SharedState& state, const SessionOptions& options)
     : run_(run),
-      rig_(rig),
       mounts_(mounts),
       connection_(connection),
       state_(state),

@@ -44,6 +44,11 @@ class Session {
   /// What the operator's key or click means now: the next mount is in place, or this one is enough. From any thread.
   void next() { ++clicks_; }
 
+  /// Whether the estimate has all that was recorded so far.
+  [[nodiscard]] bool settled() const {
+    return !estimator_.busy() && (!recording_ || handed_over_ == compressor_->windows());
+  }
+
   /// Once step() has returned false.
   [[nodiscard]] const std::vector<calibration::TableRecording>& recordings() const { return recordings_; }
   [[nodiscard]] const RunInputs& inputs() const { return inputs_; }
@@ -88,7 +93,6 @@ class Session {
   [[nodiscard]] int mount_of(std::size_t index) const;
 
   const io::RunFile& run_;
-  const io::RigFile& rig_;
   std::vector<std::string> mounts_;
   bus::Connection& connection_;
   SharedState& state_;

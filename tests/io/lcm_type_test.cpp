@@ -97,7 +97,8 @@ TEST_F(LcmTypesTest, FingerprintsDoNotKnowTheNameOfATypeButThoseOfItsMembers) {
 TEST_F(LcmTypesTest, TakesFieldsByPath) {
   LcmFieldReader r =
       reader("bench.outer_t", {"utime", "one.b", "many.a", "many.names", "raw", "g[1]", "f", "m", "one.names[1]"});
-  ASSERT_TRUE(r.read(outer()));
+  const std::string message = outer();  // texts are views into it
+  ASSERT_TRUE(r.read(message));
   EXPECT_THAT(r.integers(0), ElementsAre(1234567890123456789));
   EXPECT_THAT(r.reals(1), ElementsAre(-70, -69, -68, -67, -66, -65));
   EXPECT_THAT(r.integers(2), ElementsAre(1, 2));
@@ -147,7 +148,7 @@ TEST_F(LcmTypesTest, RefusesCountsThatDoNotFit) {
   for (const std::int32_t n : {-1, 0x7fffffff, 1 << 30, std::numeric_limits<std::int32_t>::min()}) {
     EXPECT_FALSE(t.read(MessageBytes(t.fingerprint()).i32(n).i32(n).bytes())) << n;
     EXPECT_FALSE(t.read(MessageBytes(t.fingerprint()).i32(n).i32(1).f64(1).bytes())) << n;
-    EXPECT_FALSE(u.read(MessageBytes(u.fingerprint()).i64(std::int64_t{n} << 31).bytes())) << n;
+    EXPECT_FALSE(u.read(MessageBytes(u.fingerprint()).i64(std::int64_t{n} * 2147483648).bytes())) << n;
   }
   EXPECT_TRUE(t.read(MessageBytes(t.fingerprint()).i32(0).i32(0x7fffffff).bytes()));  // none of many is none
   EXPECT_TRUE(u.read(MessageBytes(u.fingerprint()).i64(1).i32(1).i32(1).f64(4).bytes()));

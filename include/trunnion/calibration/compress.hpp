@@ -55,6 +55,7 @@ class Compressor final : public SampleSink {
 
   /// What is there before the end: windows from number @p from on, the course of the encoders so far, the figures.
   [[nodiscard]] CompressedRecording so_far(std::size_t from) const;
+  [[nodiscard]] std::size_t windows() const { return result_.windows.size(); }
   [[nodiscard]] const RecordingFigures& figures() const { return result_.figures; }
   /// Stamps of the unit and of the encoders that were out of their order.
   [[nodiscard]] long long strays() const { return result_.figures.stray + encoder_figures_.stray; }

@@ -87,7 +87,7 @@ class LcmFieldReader {
   /// @return false when the message is not of the type, is cut short or too long, or a count in it is negative
   bool read(std::string_view message);
 
-  /// What the last read() found at path number @p path; integers are exact.
+  /// What the last read() found at path number @p path; integers are exact, texts are views into the message.
   [[nodiscard]] const std::vector<std::int64_t>& integers(std::size_t path) const { return field_[path].integer; }
   [[nodiscard]] const std::vector<double>& reals(std::size_t path) const { return field_[path].real; }
   [[nodiscard]] const std::vector<std::string_view>& texts(std::size_t path) const { return field_[path].text; }
