@@ -130,7 +130,6 @@ void apply(const Options& o) {
     CorrectorOptions options;
     options.calibration = o.calibration;
     if (run.sheet.counts.gyro.scale != 1.0 && run.sheet.counts.accel.scale != 1.0) options.sheet = run.sheet_path;
-    options.bits = 30;  // whatever the register: in floating point nothing overflows
     options.recording = o.recording;
     options.in_floating_point = true;
     samples = apply_to_log(files, run.channels, o.output, Corrector(options));

@@ -53,8 +53,13 @@ Corrector::Corrector(const CorrectorOptions& options) {
   UnitScale<double> scale;
   if (!options.sheet.empty()) {
     const io::SensorSheet sheet = io::read_sensor_sheet(options.sheet);
-    check_counts(sheet, options.sheet, options.bits);
     scale = sheet.counts;
+    if (!options.in_floating_point) {
+      check_counts(sheet, options.sheet, options.bits);
+    } else if (scale.gyro.scale == 1.0 || scale.accel.scale == 1.0) {
+      throw io::input_error(options.sheet, 0, "scale_counts_per_rad_s, scale_counts_per_m_s2",
+                            "are not stated: what is a raw count?");
+    }
   }
   int fraction = options.fraction;
   if (is_block(options.calibration)) {

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <limits>
 #include <regex>
@@ -30,6 +31,8 @@ struct Options {
 };
 
 ExitCode replay(const Options& o) {
+  if (std::isnan(o.speed) || std::isnan(o.start) || std::isnan(o.end))  // no range of CLI11's refuses it
+    throw Error(ExitCode::kUsage, "--speed, --start and --end are numbers");
   std::regex pattern;
   try {
     pattern = std::regex(o.pattern, std::regex::ECMAScript | std::regex::optimize);
