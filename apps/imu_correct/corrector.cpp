@@ -3,8 +3,8 @@
 
 #include "corrector.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include "../terminal.hpp"
@@ -90,7 +90,7 @@ Corrector::Corrector(const CorrectorOptions& options) {
 void Corrector::read_block(const CorrectorOptions& options, const UnitScale<double>& scale) {
   const std::string bytes = io::read_whole(options.calibration, sizeof(FlashBlock));
   alignas(8) unsigned char memory[sizeof(FlashBlock)] = {};
-  std::memcpy(memory, bytes.data(), std::min(bytes.size(), sizeof memory));
+  std::copy_n(bytes.begin(), std::min(bytes.size(), sizeof memory), memory);
   const auto read = read_flash_block(memory, bytes.size());
   if (!read.ok()) throw io::input_error(options.calibration, 0, "", "is no whole block of this version");
   const FlashBlock& block = *read.value();

@@ -35,9 +35,9 @@ std::string text_of(const PlanStep& step) {
 }  // namespace
 
 void add_notice(SharedState& state, const std::string& text) {
-  static const auto start = std::chrono::steady_clock::now();
+  static const auto kStart = std::chrono::steady_clock::now();
   state.change([&](LiveState& s) {
-    const double t = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const double t = std::chrono::duration<double>(std::chrono::steady_clock::now() - kStart).count();
     s.notices.push_back({t, s.notices.empty() ? 1 : s.notices.back().serial + 1, text});
     if (s.notices.size() > kNotices) s.notices.pop_front();
   });

@@ -169,7 +169,7 @@ std::string MappedMessages::imu(const LcmEvent& event, std::vector<Sample>& samp
   samples.resize(n);
   for (std::size_t k = 0; k < n; ++k) {
     Sample& sample = samples[k];
-    const std::string wrong = time_of(event, stamps == n ? k : 0, sample.utime);
+    std::string wrong = time_of(event, stamps == n ? k : 0, sample.utime);
     if (!wrong.empty()) return wrong;
     if (stamps != n)
       sample.utime =
@@ -190,7 +190,7 @@ std::string MappedMessages::encoder(const LcmEvent& event, std::int64_t& utime, 
   if (!reader_.read(event.data)) return "is no whole message of type " + map_->type;
   if (map_->clock != MessageMap::Clock::kLog && count(0) == 0) return "has no stamp";
   if (map_->clock == MessageMap::Clock::kSecondsAndNanoseconds && count(1) == 0) return "has no stamp";
-  const std::string wrong = time_of(event, 0, utime);
+  std::string wrong = time_of(event, 0, utime);
   if (!wrong.empty()) return wrong;
   for (std::size_t i = 0; i < 2; ++i) {
     const std::size_t paths = map_->angle.fields.size();

@@ -119,13 +119,13 @@ std::vector<MessagePreset> make_presets() {
 }  // namespace
 
 std::shared_ptr<const LcmTypes> known_types() {
-  static const std::shared_ptr<const LcmTypes> types = make_types();
-  return types;
+  static const std::shared_ptr<const LcmTypes> kTypes = make_types();
+  return kTypes;
 }
 
 const std::vector<MessagePreset>& message_presets() {
-  static const std::vector<MessagePreset> presets = make_presets();
-  return presets;
+  static const std::vector<MessagePreset> kPresets = make_presets();
+  return kPresets;
 }
 
 const MessagePreset& message_preset(const std::string& name) {
