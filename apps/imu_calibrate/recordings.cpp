@@ -113,6 +113,14 @@ void keep_inputs(const std::string& output, const std::vector<std::string>& inpu
   }
 }
 
+calibration::CompressOptions compress_options(const io::RunFile& run, const io::RecordingFiles& files) {
+  calibration::CompressOptions options;
+  options.name = files.name();
+  options.period = run.sheet.rate_hz > 0.0 ? 1.0 / run.sheet.rate_hz : 0.0;
+  options.range = {run.sheet.gyro_range, run.sheet.accel_range};
+  return options;
+}
+
 std::vector<calibration::TableRecording> read_table_recordings(const io::RunFile& run,
                                                                const std::vector<std::string>& mounts,
                                                                RunInputs& inputs) {
@@ -121,11 +129,7 @@ std::vector<calibration::TableRecording> read_table_recordings(const io::RunFile
   ReadProgress progress(run.recordings.size());
   for_each_recording(run.recordings.size(), [&](std::size_t i) {
     const io::RecordingFiles& files = run.recordings[i];
-    calibration::CompressOptions options;
-    options.name = files.name();
-    options.period = run.sheet.rate_hz > 0.0 ? 1.0 / run.sheet.rate_hz : 0.0;
-    options.range = {run.sheet.gyro_range, run.sheet.accel_range};
-    calibration::Compressor compressor(options);
+    calibration::Compressor compressor(compress_options(run, files));
     each[i].losses = io::read_recording(run, files, compressor, each[i].digests, progress.of(i));
     recordings[i].data = compressor.finish();
     recordings[i].mount = static_cast<int>(std::find(mounts.begin(), mounts.end(), files.mount) - mounts.begin());

@@ -31,6 +31,9 @@ std::vector<std::string> files_of(const io::RunFile& run);
 /// Refuses (usage) an output that is one of the inputs: they are raw data.
 void keep_inputs(const std::string& output, const std::vector<std::string>& inputs);
 
+/// How a recording of the run is compressed, whether it is read or comes live.
+calibration::CompressOptions compress_options(const io::RunFile& run, const io::RecordingFiles& files);
+
 /// Reads and compresses every recording, on as many threads as the machine has. @p mounts: names, in the rig's order
 std::vector<calibration::TableRecording> read_table_recordings(const io::RunFile& run,
                                                                const std::vector<std::string>& mounts,

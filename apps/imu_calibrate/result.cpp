@@ -23,8 +23,7 @@ void judge_limits(const io::RunFile& run, const calibration::Solution& solution,
   for (std::size_t i = 0; i < solution.parameters.size(); ++i) {
     const calibration::Parameter& p = solution.parameters[i];
     const io::EntryVerdict& limit = run.limits[static_cast<std::size_t>(p.kind)];
-    if (p.unit != kind_of(p.kind).unit || p.name == "heading")
-      continue;  // gravity and heading are no entries of a verdict
+    if (!calibration::has_verdict(p)) continue;
     const auto at = static_cast<Eigen::Index>(i);
     const double value = solution.x(at) * p.in_unit;
     const double sigma = std::sqrt(solution.observability.covariance(at, at)) * p.in_unit;

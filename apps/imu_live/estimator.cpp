@@ -50,7 +50,7 @@ std::vector<LiveState::Entry> entries_of(const io::RunFile& run, const std::vect
     const calibration::Parameter& p = parameters[i];
     const auto at = static_cast<Eigen::Index>(i);
     const double stated = run.limits[static_cast<std::size_t>(p.kind)].sigma;
-    const bool judged = stated >= 0.0 && p.unit == kind_of(p.kind).unit && p.name != "heading";
+    const bool judged = stated >= 0.0 && calibration::has_verdict(p);
     const double limit = judged ? stated : p.refuse_above * p.in_unit;
     entries.push_back({p.name, p.unit, x(at) * p.in_unit, sigma(at) * p.in_unit, limit});
   }

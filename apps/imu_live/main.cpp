@@ -48,9 +48,7 @@ bool take_enter(bool& entered) {
 /// Words on stderr: notices as they come, the rest as one line that changes.
 class Words {
  public:
-  explicit Words(SharedState& state) : state_(state) {}
-  void say() {
-    const LiveState s = state_.copy();
+  void say(const LiveState& s) {
     std::vector<std::string> lines;
     for (const auto& notice : s.notices) {
       if (notice.serial > said_) lines.push_back("[" + fixed(notice.t) + " s] " + notice.text);
@@ -75,7 +73,6 @@ class Words {
     std::snprintf(text, sizeof text, "%.1f", value);
     return text;
   }
-  SharedState& state_;
   std::optional<ProgressLine> progress_;
   long long said_ = 0;
   std::string guided_;
@@ -98,7 +95,7 @@ ExitCode live(const Options& o, SharedState& state) {
     std::fprintf(stderr, "page: %s\n", page->url().c_str());
   }
 #endif
-  Words words(state);
+  Words words;
   bool input = true;
   auto said = std::chrono::steady_clock::now();
   auto changed = said - kTwice;
@@ -120,13 +117,13 @@ ExitCode live(const Options& o, SharedState& state) {
     phase = shown.phase;
     recording = shown.recording;
     if (entered && now - changed > kTwice) session.next();
-    words.say();
+    words.say(shown);
   }
   state.change([](LiveState& s) {
     s.phase = Phase::kSolving;
     s.guidance = "solving";
   });
-  words.say();
+  words.say(state.copy());
   calibration::Solution solution;
   io::CalibrationFile file;
   try {

@@ -29,14 +29,6 @@ constexpr long long kStraysOfAGap = 2;  // the first stamp of a channel after a 
 constexpr double kSilent = 1.0;         // s
 constexpr double kWorthKeeping = 10.0;  // s of a recording that was interrupted
 
-calibration::CompressOptions compress_options(const io::RunFile& run, const io::RecordingFiles& files) {
-  calibration::CompressOptions options;
-  options.name = files.name();
-  options.period = run.sheet.rate_hz > 0.0 ? 1.0 / run.sheet.rate_hz : 0.0;
-  options.range = {run.sheet.gyro_range, run.sheet.accel_range};
-  return options;
-}
-
 }  // namespace
 
 Session::Session(const io::RunFile& run, const io::RigFile& rig, const std::vector<std::string>& mounts,
@@ -47,10 +39,9 @@ Session::Session(const io::RunFile& run, const io::RigFile& rig, const std::vect
       state_(state),
       options_(options),
       estimator_(run, rig, mounts, state),
-      started_(Clock::now()),
-      watched_(started_),
-      shown_(started_),
-      next_estimate_(started_) {
+      watched_(Clock::now()),
+      shown_(watched_),
+      next_estimate_(watched_) {
   if (run.recordings.size() > kMaxRecordings)
     throw Error(ExitCode::kInput,
                 run.path + ": more than " + std::to_string(kMaxRecordings) + " recordings in one run");
@@ -322,20 +313,22 @@ void Session::show_figures() {
   const auto now = Clock::now();
   const double past = duration<double>(now - shown_).count();
   shown_ = now;
-  const auto show = [&](Arrivals& arrivals, const SequenceWatch* sequence, LiveState::Channel& into) {
+  const auto show = [&](Arrivals& arrivals, LiveState::Channel& into) {
     if (past > 0.1) arrivals.rate = static_cast<double>(arrivals.count) / past;
     arrivals.count = 0;
     into.rate_hz = arrivals.rate;
     into.silent_s = recording_ ? duration<double>(now - arrivals.last).count() : 0.0;
-    if (sequence == nullptr) return;
-    into.samples = sequence->received();
-    into.lost = sequence->numbered() ? sequence->lost() : 0;
-    into.late = sequence->late();
+  };
+  const auto count = [](const SequenceWatch& sequence, LiveState::Channel& into) {
+    into.lost = sequence.numbered() ? sequence.lost() : 0;
+    into.late = sequence.late();
   };
   state_.change([&](LiveState& s) {
-    show(imu_, decoder_ ? &decoder_->imu_sequence() : nullptr, s.imu);
-    show(encoder_, decoder_ ? &decoder_->encoder_sequence() : nullptr, s.encoder);
+    show(imu_, s.imu);
+    show(encoder_, s.encoder);
     if (!compressor_) return;
+    count(decoder_->imu_sequence(), s.imu);
+    count(decoder_->encoder_sequence(), s.encoder);
     s.imu.samples = decoder_->samples();
     s.encoder.samples = decoder_->encoders();
     s.duration = compressor_->elapsed();
@@ -348,10 +341,8 @@ void Session::show_figures() {
 void Session::watch() {
   const auto now = Clock::now();
   const auto silent = [&](const Arrivals& a) { return duration<double>(now - a.last).count(); };
-  if (journal_) {
-    if (!journal_->failure().empty())
-      say_once(said_journal_, "nothing more is recorded: " + journal_->failure() + "; the calibration goes on");
-  }
+  if (journal_ && !journal_->failure().empty())
+    say_once(said_journal_, "nothing more is recorded: " + journal_->failure() + "; the calibration goes on");
   if (recording_) {
     // unattended both are silent where a mount ends
     const bool both = options_.unattended && silent(imu_) > kSilent && silent(encoder_) > kSilent;
@@ -359,14 +350,13 @@ void Session::watch() {
       watch_channel("the unit", imu_, silent(imu_));
       watch_channel("the encoders", encoder_, silent(encoder_));
     }
+    const SequenceWatch& sequence = decoder_->imu_sequence();
     const long long strays = compressor_->strays();
-    if (strays > 2 * said_strays_ + kStraysOfAGap &&
-        !decoder_->imu_sequence()
-             .two_publishers()) {  // not each: a clock that keeps jumping would leave no room for anything else
+    // not each: a clock that keeps jumping would leave no room for anything else
+    if (strays > 2 * said_strays_ + kStraysOfAGap && !sequence.two_publishers()) {
       add_notice(state_, "a clock jumped: " + std::to_string(strays) + " stamps out of their order are left out");
       said_strays_ = strays;
     }
-    const SequenceWatch& sequence = decoder_->imu_sequence();
     if (sequence.restarts() > restarts_) {
       restarts_ = sequence.restarts();
       add_notice(state_,
@@ -382,11 +372,10 @@ void Session::watch() {
   }
   if (now - shown_ > kShowEvery) show_figures();
   int clicks = clicks_.exchange(0);
-  // one that was taken up may have been whole when the program was killed: then nothing more comes
-  const bool begun = arrived_ || (recording_ && journal_ && journal_->recovered() > 0 && state_.copy().enough);
-  if (options_.unattended && recording_ && begun && silent(imu_) > options_.silence &&
-      silent(encoder_) > options_.silence)
-    clicks = 1;
+  if (options_.unattended && recording_ && silent(imu_) > options_.silence && silent(encoder_) > options_.silence) {
+    // one that was taken up may have been whole when the program was killed: then nothing more comes
+    if (arrived_ || (journal_ && journal_->recovered() > 0 && state_.copy().enough)) clicks = 1;
+  }
   if (clicks == 0) return;
   if (recording_) {
     finish_recording();

@@ -111,7 +111,6 @@ class Session {
 
   Arrivals imu_;
   Arrivals encoder_;
-  Clock::time_point started_;
   Clock::time_point watched_;
   Clock::time_point flushed_;
   Clock::time_point shown_;

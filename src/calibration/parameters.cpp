@@ -173,11 +173,15 @@ CalibrationValues Layout::sigmas(const Eigen::MatrixXd& covariance) const {
   return sigma;
 }
 
+bool has_verdict(const Parameter& parameter) {
+  return parameter.unit == kind_of(parameter.kind).unit && parameter.name != "heading";
+}
+
 std::string implausible(const std::vector<Parameter>& parameters, const Eigen::VectorXd& x) {
   std::string text;
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const Parameter& p = parameters[i];
-    if (p.unit != kind_of(p.kind).unit || p.name == "heading") continue;  // gravity has its prior, a heading any value
+    if (!has_verdict(p)) continue;
     const double value = x(static_cast<Eigen::Index>(i)) * p.in_unit;
     if (std::abs(value) <= kind_of(p.kind).largest) continue;
     char line[160];

@@ -99,7 +99,6 @@ struct SequentialSolve::State {
     estimate.x = x + step;
     estimate.values = at;
     layout.read(estimate.x, estimate.values);
-    estimate.windows = usable();
     estimate.recordings = recordings.size();
     heading_sigma = estimate.sigma(layout.heading);
   }

@@ -13,13 +13,13 @@
 #include <cstring>
 #include <utility>
 
+#include "big_endian.hpp"
 #include "trunnion/io/fault.hpp"
 
 namespace trunnion::io {
 namespace {
 
 constexpr std::size_t kBlock = std::size_t{1} << 16U;
-constexpr std::string_view kSync = "\xed\xa1\xda\x01";
 
 }  // namespace
 
@@ -44,7 +44,9 @@ LcmJournal::LcmJournal(std::string path, const std::function<void(const LcmEvent
       }
       number_ = recovered_;
       dropped_ = status.st_size - size_;
-      if (recovered_ == 0 && read_whole(part).compare(0, kSync.size(), kSync) != 0)
+      char first[4] = {};
+      const ssize_t got = ::pread(descriptor_, first, sizeof first, 0);
+      if (recovered_ == 0 && (got != sizeof first || load_u32(first) != LcmLogReader::kSync))
         throw input_error(part, 0, "", "is no LCM log that was begun: move it away");
       if (::ftruncate(descriptor_, size_) != 0 || ::lseek(descriptor_, size_, SEEK_SET) != size_)
         throw input_error(part, 0, "", std::string("cannot write: ") + std::strerror(errno));

@@ -18,7 +18,6 @@
 namespace trunnion::io {
 namespace {
 
-constexpr std::uint32_t kSync = 0xEDA1DA01U;
 constexpr std::size_t kBlock = std::size_t{1} << 18U;  // stays in the cache
 
 }  // namespace
@@ -149,7 +148,7 @@ bool LcmLogReader::next(LcmEvent& event) {
 
 void append_lcm_record(std::int64_t number, std::int64_t timestamp, std::string_view channel, std::string_view data,
                        std::string& out) {
-  append_unsigned(out, kSync);
+  append_unsigned(out, LcmLogReader::kSync);
   append_i64(out, number);
   append_i64(out, timestamp);
   append_unsigned(out, static_cast<std::uint32_t>(channel.size()));

@@ -72,6 +72,9 @@ struct Layout {
   void visit(CalibrationValues& values, Visit&& visit) const;
 };
 
+/// Whether limits hold for the entry: gravity has its prior, and a heading may be anything.
+bool has_verdict(const Parameter& parameter);
+
 /// The entries whose value no instrument and no rig has (EntryKind::largest), a line each; empty where there are none.
 std::string implausible(const std::vector<Parameter>& parameters, const Eigen::VectorXd& x);
 

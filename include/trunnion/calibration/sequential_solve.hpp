@@ -28,7 +28,6 @@ struct RunningEstimate {
   Eigen::VectorXd x;      ///< SI
   Eigen::VectorXd sigma;  ///< SI; of what the data do not tell yet that of its wide prior
   CalibrationValues values;
-  std::size_t windows = 0;
   std::size_t recordings = 0;  ///< that are in it
   double chi_square = 0.0;     ///< reduced, of the last windows at the last linearisation, which knows them; 0: too few
   int linearisations = 0;      ///< since the beginning

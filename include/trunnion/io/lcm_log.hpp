@@ -31,7 +31,8 @@ struct LcmEvent {
 
 class LcmLogReader {
  public:
-  static constexpr std::size_t kHeader = 28;  ///< bytes of a record before channel and data
+  static constexpr std::uint32_t kSync = 0xEDA1DA01U;  ///< a record begins with it
+  static constexpr std::size_t kHeader = 28;           ///< bytes of a record before channel and data
   static constexpr std::size_t kLongestChannel = 63;
   static constexpr std::size_t kLargestData = std::size_t{1} << 28U;
 
