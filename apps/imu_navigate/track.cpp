@@ -203,12 +203,6 @@ void fly(const BodyMotionSeries& motion, const NavigationState<double>& state, c
 
 }  // namespace
 
-Vec3<double> euler_angles(const Quaternion<double>& q_nb) {
-  const Mat3<double> C = q_nb.toRotationMatrix();
-  return Vec3<double>(std::atan2(C(2, 1), C(2, 2)), -std::asin(std::clamp(C(2, 0), -1.0, 1.0)),
-                      std::atan2(C(1, 0), C(0, 0)));
-}
-
 Track navigate(const BodyMotionSeries& motion, const Start& start, const std::string& algorithm, double output_hz) {
   const std::size_t count =
       start.align == Align::kNone ? 0 : static_cast<std::size_t>(std::lround(start.align_time / motion.period));

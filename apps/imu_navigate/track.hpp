@@ -54,7 +54,4 @@ Track navigate(const BodyMotionSeries& motion, const Start& start, const std::st
 /// Dead reckoning of a wheel. @throws Error (input) when it never rests
 Track reckon(const BodyMotionSeries& motion, const Start& start, const Wheel<double>& wheel, double output_hz);
 
-/// Roll, pitch and yaw of q_nb [rad].
-Vec3<double> euler_angles(const Quaternion<double>& q_nb);
-
 }  // namespace trunnion::app

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "trunnion/core/binary_angle.hpp"
+#include "trunnion/core/chi_square.hpp"
 #include "trunnion/core/earth.hpp"
 #include "trunnion/core/fixed.hpp"
 #include "trunnion/core/linear.hpp"

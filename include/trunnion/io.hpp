@@ -6,6 +6,7 @@
 
 #pragma once
 
+#include "trunnion/io/antenna_epoch.hpp"
 #include "trunnion/io/calibration_file.hpp"
 #include "trunnion/io/csv.hpp"
 #include "trunnion/io/digest.hpp"
@@ -14,6 +15,7 @@
 #include "trunnion/io/lcm_recording.hpp"
 #include "trunnion/io/lcm_type.hpp"
 #include "trunnion/io/message_map.hpp"
+#include "trunnion/io/rinex.hpp"
 #include "trunnion/io/run_file.hpp"
 #include "trunnion/io/sensor_sheet.hpp"
 #include "trunnion/io/whole_file.hpp"

@@ -6,8 +6,10 @@
 #pragma once
 
 #include "trunnion/simulation/analytic_path.hpp"
+#include "trunnion/simulation/attitude_path.hpp"
 #include "trunnion/simulation/axis_motion.hpp"
 #include "trunnion/simulation/flicker.hpp"
 #include "trunnion/simulation/gaussian.hpp"
+#include "trunnion/simulation/gnss_array.hpp"
 #include "trunnion/simulation/rotating_platform.hpp"
 #include "trunnion/simulation/table_run.hpp"

@@ -52,6 +52,39 @@ TEST(RotationExp, IsOrthonormalAndFollowsRodrigues) {
   }
 }
 
+TEST(RightJacobian, AgreesWithDifferences) {
+  std::mt19937_64 rng(20260805);
+  for (int i = 0; i < 300; ++i) {
+    const Vec3<double> phi = std::pow(10.0, -(i % 8)) * any_vector(rng);
+    const Mat3<double> J = right_jacobian(phi);
+    constexpr double kStep = 1e-5;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Vec3<double> d = kStep * Vec3<double>::Unit(axis);
+      const Quaternion<double> from = quaternion_exp<double>(phi - d);
+      const Quaternion<double> to = quaternion_exp<double>(phi + d);
+      EXPECT_LT((quaternion_log<double>(from.conjugate() * to) / (2.0 * kStep) - J.col(axis)).norm(), 1e-9);
+    }
+  }
+}
+
+TEST(EulerAngles, ComeBackWhereTheyAreUnique) {
+  std::mt19937_64 rng(20260806);
+  std::uniform_real_distribution<double> any(-1.0, 1.0);
+  for (int i = 0; i < 1000; ++i) {
+    const Vec3<double> angles(3.14 * any(rng), 1.57 * any(rng), 3.14 * any(rng));
+    EXPECT_LT((euler_angles(quaternion_of_euler(angles.x(), angles.y(), angles.z())) - angles).norm(), 1e-10);
+  }
+  // straight up and down: finite, and the same attitude
+  for (const double pitch : {1.5707963267948966, -1.5707963267948966}) {
+    const Quaternion<double> q = quaternion_of_euler(0.3, pitch, 1.0);
+    const Vec3<double> angles = euler_angles(q);
+    ASSERT_TRUE(angles.allFinite());
+    EXPECT_NEAR(angles.y(), pitch, 1e-7);
+    const Quaternion<double> back = quaternion_of_euler(angles.x(), angles.y(), angles.z());
+    EXPECT_LT(quaternion_log<double>(back.conjugate() * q).norm(), 1e-7);
+  }
+}
+
 TEST(Turn, AgreesWithTheMatrixAboutEachAxis) {
   std::mt19937_64 rng(20260804);
   for (int i = 0; i < 100; ++i) {

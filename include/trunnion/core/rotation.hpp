@@ -7,6 +7,8 @@
 ///   q_nb likewise, Hamilton, scalar first in arguments:  v_n = q_nb v_b q_nb^-1
 ///   C = Exp(phi) = I + sin|phi| K + (1 - cos|phi|) K^2,  K = skew(phi / |phi|)   ... (2)  Rodrigues
 ///   C_nb(t + dt) = C_nb(t) Exp(w_nb_b dt)  for a constant rate                      ... (3)
+///   Exp(phi + d) = Exp(phi) Exp(Jr(phi) d),  Jr = I - (1 - cos|phi|)/|phi| K + (1 - sin|phi|/|phi|) K^2   ... (4)
+///   C_nb = Rz(yaw) Ry(pitch) Rx(roll)                                               ... (5)
 ///
 /// phi [rad] is the rotation vector. Sola, Deray, Atchuthan, arXiv:1812.01537, eq. (132)-(147).
 
@@ -60,6 +62,44 @@ Vec3<T> quaternion_log(const Quaternion<T>& q) {
 template <class T>
 Mat3<T> rotation_exp(const Vec3<T>& phi) {
   return quaternion_exp(phi).toRotationMatrix();
+}
+
+/// Right Jacobian of Exp, eq. (4), to first order in d. Exact through zero.
+template <class T>
+Mat3<T> right_jacobian(const Vec3<T>& phi) {
+  using std::cos;
+  using std::sin;
+  using std::sqrt;
+  const T theta2 = phi.squaredNorm();
+  T a = T(0.5) - theta2 * (T(1) / T(24) - theta2 / T(720));
+  T b = T(1) / T(6) - theta2 * (T(1) / T(120) - theta2 / T(5040));
+  if (theta2 > T(0.01)) {  // below, the next terms are theta^6 / 40320: 2e-11 of 1/2
+    const T theta = sqrt(theta2);
+    const T half = sin(theta / T(2)) / theta;
+    a = T(2) * half * half;
+    b = (T(1) - sin(theta) / theta) / theta2;
+  }
+  const Mat3<T> K = skew(phi);
+  return Mat3<T>::Identity() - a * K + b * K * K;
+}
+
+/// Roll, pitch, yaw [rad] of eq. (5). At a pitch of +-90 deg roll and yaw are one angle, which is given as yaw.
+template <class T>
+Vec3<T> euler_angles(const Quaternion<T>& q_nb) {
+  using std::atan2;
+  using std::sqrt;
+  const Mat3<T> C = q_nb.toRotationMatrix();
+  const T level = sqrt(C(0, 0) * C(0, 0) + C(1, 0) * C(1, 0));
+  const T pitch = atan2(-C(2, 0), level);
+  if (level < T(16) * std::numeric_limits<T>::epsilon()) return Vec3<T>(T(0), pitch, atan2(-C(0, 1), C(1, 1)));
+  return Vec3<T>(atan2(C(2, 1), C(2, 2)), pitch, atan2(C(1, 0), C(0, 0)));
+}
+
+/// The quaternion of roll, pitch and yaw [rad], eq. (5).
+template <class T>
+Quaternion<T> quaternion_of_euler(const T& roll, const T& pitch, const T& yaw) {
+  return Quaternion<T>(Eigen::AngleAxis<T>(yaw, Vec3<T>::UnitZ()) * Eigen::AngleAxis<T>(pitch, Vec3<T>::UnitY()) *
+                       Eigen::AngleAxis<T>(roll, Vec3<T>::UnitX()));
 }
 
 /// Turns @p v about z by the angle whose sine and cosine are given: Rz(angle) v.

@@ -20,6 +20,7 @@ enum class Status : std::uint8_t {
   kDamaged,         ///< a block whose check does not fit
   kOtherVersion,    ///< a block of another version of its format
   kOtherByteOrder,  ///< a block written for a machine of the other byte order
+  kInconsistent,    ///< data that contradict each other, or what is known
 };
 
 /// A value, or the reason why there is none. @code if (auto r = f(); r.ok()) use(r.value()); @endcode

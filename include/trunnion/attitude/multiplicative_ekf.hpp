@@ -1,0 +1,244 @@
+// SPDX-FileCopyrightText: 2026 the trunnion authors
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// The attitude filter: an error of three components in the body's axes, the quaternion never leaves the unit sphere.
+///
+///   C_nb = C_hat Exp(phi),   x = (phi, d_w | m),   w: the rate w_nb_b, or the bias of the gyros              ... (1)
+///   q <- q Exp(w_nb_b t)                                                                                    ... (2)
+///   phi <- Exp(-w t) phi +- Jr(w t) t d_w,   + for a rate, - for a bias                                     ... (3)
+///   Q = [Jr q t^3/3 Jr^T, +- Jr q t^2/2; ., q t]  (+ n^2 t I for gyros of noise n)                          ... (4)
+///   rate and bias: w' = -w / tau + noise of density q; a random walk for an infinite tau
+///   m' = -m / tau_m + noise, in the steady state k^2 N^-1: errors of the vectors seen that do not change at once ...
+///   (5) update: x minimises x^T P^-1 x + r(x)^T N r(x), iterated; H of (2) of vector_observation.hpp times Jr(phi) ...
+///   (6) K = P H^T N (I + H P H^T N)^-1,   P <- G ((I - KH) P (I - KH)^T + K N^-1 K^T) G^T,   G = Jr(phi)         ...
+///   (7)
+///
+/// (7) is Joseph's form with the information N of what was seen: N may be singular, few satellites are not none. NIS is
+/// of the last iterate: of the first, it takes the curvature of a large correction for noise.
+///
+/// Lefferts, Markley & Shuster, J. Guidance 5 (1982), 417; Markley, J. Guidance 26 (2003), 311; Bell & Cathey, IEEE TAC
+/// 38 (1993), 294 for the iteration; docs/theory/interferometer.md.
+
+#pragma once
+
+#include <limits>
+
+#include "trunnion/attitude/vector_observation.hpp"
+#include "trunnion/core/chi_square.hpp"
+
+namespace trunnion {
+
+/// How attitude and slow states wander.
+template <class T>
+struct AttitudeNoise {
+  T walk = T(0);                                ///< of the rate [rad/s/sqrt(s)], or of the bias, sqrt(q)
+  T time = std::numeric_limits<T>::infinity();  ///< tau [s]
+  T gyro = T(0);                                ///< n [rad/s/sqrt(Hz)]
+  T coloured = T(0);                            ///< k: standard deviation of m against that of the white noise
+  T coloured_time = T(30);                      ///< tau_m [s]
+};
+
+/// The state and its covariance, and how they add: x = (phi, d_w | m).
+template <class T, int M, bool Coloured>
+struct AttitudeState {
+  static constexpr int kStates = 6 + (Coloured ? 3 * M : 0);
+  using Vector = Eigen::Matrix<T, kStates, 1>;
+  using Square = Eigen::Matrix<T, kStates, kStates>;
+
+  Quaternion<T> q_nb = Quaternion<T>::Identity();
+  Vec3<T> w = Vec3<T>::Zero();                                        ///< rate, or bias of the gyros [rad/s]
+  Eigen::Matrix<T, 3 * M, 1> m = Eigen::Matrix<T, 3 * M, 1>::Zero();  ///< n [m]
+  Square P = Square::Zero();
+
+  /// Moved by @p x; the covariance of x becomes that about the new state, eq. (7): G.
+  void move(const Vector& x) {
+    const Vec3<T> phi = x.template head<3>();
+    q_nb = (q_nb * quaternion_exp(phi)).normalized();
+    w += x.template segment<3>(3);
+    if constexpr (Coloured) m += x.template tail<3 * M>();
+    carry(right_jacobian(phi));
+  }
+  /// The x that leads to @p other.
+  [[nodiscard]] Vector to(const AttitudeState& other) const {
+    Vector x;
+    x.template head<3>() = quaternion_log<T>(q_nb.conjugate() * other.q_nb);
+    x.template segment<3>(3) = other.w - w;
+    if constexpr (Coloured) x.template tail<3 * M>() = other.m - m;
+    return x;
+  }
+  /// P of another measure of phi: G P G^T, symmetric again.
+  void carry(const Mat3<T>& G) {
+    P.template topRows<3>() = (G * P.template topRows<3>()).eval();
+    P.template leftCols<3>() = (P.template leftCols<3>() * G.transpose()).eval();
+    P = (T(0.5) * (P + P.transpose())).eval();
+  }
+};
+
+/// Before and after an update, and the way from the last one: what a smoother needs.
+template <class T, int M, bool Coloured>
+struct AttitudeRecord {
+  using State = AttitudeState<T, M, Coloured>;
+  State before, after;
+  typename State::Square Phi = State::Square::Identity();  ///< from the last `after` to this `before`
+};
+
+/// What an update found.
+template <class T>
+struct Innovation {
+  T nis = T(0);   ///< chi-square of `rank` where the filter is right
+  int rank = 0;   ///< of what was seen
+  int steps = 0;  ///< of the iteration
+};
+
+/// @tparam M vectors seen; @tparam Coloured whether (5) is there: 3 M states more
+template <class T, int M, bool Coloured = false>
+class MultiplicativeEkf {
+ public:
+  using Record = AttitudeRecord<T, M, Coloured>;
+  using State = typename Record::State;
+  using Observation = VectorObservation<T, M>;
+  static constexpr int kStates = State::kStates;
+
+  /// @param start from attitude_from_vectors(); @param free_sigma about its free axis, where it has one [rad]
+  /// @param slow_sigma of each rate or bias, which start at zero [rad/s]
+  MultiplicativeEkf(const AttitudeEstimate<T>& start, const T& free_sigma, const T& slow_sigma,
+                    const AttitudeNoise<T>& noise)
+      : noise_(noise) {
+    State& state = record_.after;
+    state.q_nb = start.q_nb.normalized();
+    state.P.template topLeftCorner<3, 3>() =
+        start.covariance + free_sigma * free_sigma * start.free_axis * start.free_axis.transpose();
+    state.P.template block<3, 3>(3, 3).diagonal().setConstant(slow_sigma * slow_sigma);
+    record_.before = state;
+  }
+
+  [[nodiscard]] const State& state() const { return record_.after; }
+  /// Of the last update(), or of the start.
+  [[nodiscard]] const Record& record() const { return record_; }
+
+  /// Without gyros, over @p t [s]. @return kOutOfRange, and nothing changed, for a time that is not finite or negative
+  Status predict(const T& t) {
+    using std::exp;
+    if (!(t >= T(0) && t <= std::numeric_limits<T>::max())) return Status::kOutOfRange;
+    // what a rate that dies away turns by
+    const bool walks = !(noise_.time <= std::numeric_limits<T>::max());
+    const T effective = walks ? t : noise_.time * (T(1) - exp(-t / noise_.time));
+    propagate(record_.after.w * effective, effective, t);
+    return Status::kOk;
+  }
+
+  /// With gyros. @param w_ib_b measured, mean over the @p t [s] since the last; @param w_in_n of the Earth, and of the
+  /// way over it [rad/s]
+  Status predict(const T& t, const Vec3<T>& w_ib_b, const Vec3<T>& w_in_n) {
+    if (!(t >= T(0) && t <= std::numeric_limits<T>::max()) || !w_ib_b.allFinite() || !w_in_n.allFinite())
+      return Status::kOutOfRange;
+    const Vec3<T> w_nb_b = w_ib_b - record_.after.w - record_.after.q_nb.conjugate() * w_in_n;
+    propagate(w_nb_b * t, -t, t);
+    return Status::kOk;
+  }
+
+  /// Eq. (6), (7). @param gate normal quantile beyond whose chi_square_quantile() a NIS refuses the observation; 0:
+  /// none
+  /// @return kOutOfRange for what is not finite, kInconsistent for what was refused and for what does not settle;
+  /// nothing is changed then
+  Status update(const Observation& seen, const RigidVectors<T, M>& vectors, const T& gate = T(0),
+                Innovation<T>* innovation = nullptr) {
+    using Stack = Eigen::Matrix<T, 3 * M, 1>;
+    using Wide = Eigen::Matrix<T, 3 * M, 3 * M>;
+    constexpr int kMostSteps = 12;
+    if (!vectors.valid() || !seen.value.allFinite() || !seen.information.allFinite()) return Status::kOutOfRange;
+    State before = record_.after;
+    if constexpr (Coloured) {
+      steady_ = noise_.coloured * noise_.coloured * covariance(seen.information);
+      if (!started_) before.P.template bottomRightCorner<3 * M, 3 * M>() = steady_;
+    }
+    Eigen::Matrix<T, 3 * M, kStates> H = Eigen::Matrix<T, 3 * M, kStates>::Zero();
+    if constexpr (Coloured) H.template rightCols<3 * M>().setIdentity();
+    typename State::Vector x = State::Vector::Zero();
+    for (int step = 1; step <= kMostSteps; ++step) {
+      const Vec3<T> phi = x.template head<3>();
+      const Mat3<T> C = (before.q_nb * quaternion_exp(phi)).toRotationMatrix();
+      const Wide N = vectors.loosened(seen.information, C);
+      H.template leftCols<3>() = vectors.turned_by(C) * right_jacobian(phi);
+      Stack r = seen.value - vectors.seen_from(C) - before.m;
+      if constexpr (Coloured) r -= x.template tail<3 * M>();
+      const Stack nu = r + H * x;
+      const Eigen::Matrix<T, kStates, 3 * M> PHt = before.P * H.transpose();
+      const Wide S = H * PHt;
+      const Eigen::PartialPivLU<Wide> whole(Wide::Identity() + N * S);
+      const Wide W = whole.solve(N);  // (S + N^-1)^-1
+      const typename State::Vector next = PHt * (W * nu);
+      if (!next.allFinite()) return Status::kInconsistent;
+      const T moved = (next - x).template head<3>().norm();
+      x = next;
+      if (moved > T(1e-6)) continue;
+      const T nis = nu.dot(W * nu);
+      if (innovation != nullptr) *innovation = {nis, seen.rank, step};
+      if (gate > T(0) && !(nis <= chi_square_quantile(T(seen.rank), gate))) return Status::kInconsistent;
+      const typename State::Square rest = State::Square::Identity() - PHt * W * H;
+      State after = before;
+      after.P =
+          rest * before.P * rest.transpose() + PHt * (W * whole.solve(Wide::Identity()).transpose()) * PHt.transpose();
+      after.move(x);
+      record_ = {before, after, Phi_};
+      Phi_.setIdentity();
+      started_ = true;
+      return Status::kOk;
+    }
+    return Status::kInconsistent;
+  }
+
+ private:
+  /// Eq. (2)-(5). @param sensitivity of the angle to the slow state [s]
+  void propagate(const Vec3<T>& angle, const T& sensitivity, const T& t) {
+    using std::exp;
+    State& state = record_.after;
+    const Mat3<T> J = right_jacobian(angle);
+    const T kept = exp(-t / noise_.time);
+    const T q = noise_.walk * noise_.walk;
+    typename State::Square Phi = State::Square::Identity();
+    Phi.template topLeftCorner<3, 3>() = rotation_exp<T>(-angle);
+    Phi.template block<3, 3>(0, 3) = sensitivity * J;
+    Phi.template block<3, 3>(3, 3) *= kept;
+    state.P = Phi * state.P * Phi.transpose();
+    state.P.template topLeftCorner<3, 3>() +=
+        q * t * t * t / T(3) * J * J.transpose() + noise_.gyro * noise_.gyro * t * Mat3<T>::Identity();
+    const Mat3<T> cross = (sensitivity < T(0) ? T(-0.5) : T(0.5)) * q * t * t * J;
+    state.P.template block<3, 3>(0, 3) += cross;
+    state.P.template block<3, 3>(3, 0) += cross.transpose();
+    state.P.template block<3, 3>(3, 3).diagonal().array() += q * t;
+    if constexpr (Coloured) {
+      const T fades = exp(-t / noise_.coloured_time);
+      Phi.template bottomRightCorner<3 * M, 3 * M>() *= fades;
+      state.P.template rightCols<3 * M>() *= fades;
+      state.P.template bottomRows<3 * M>() *= fades;
+      state.P.template bottomRightCorner<3 * M, 3 * M>() += (T(1) - fades * fades) * steady_;
+      state.m *= fades;
+    }
+    state.P = (T(0.5) * (state.P + state.P.transpose())).eval();
+    state.q_nb = (state.q_nb * quaternion_exp(angle)).normalized();
+    state.w *= kept;
+    Phi_ = (Phi * Phi_).eval();
+  }
+
+  /// Of what was seen; a direction that was not seen is given the variance of the worst that was.
+  static Eigen::Matrix<T, 3 * M, 3 * M> covariance(const Eigen::Matrix<T, 3 * M, 3 * M>& information) {
+    using Wide = Eigen::Matrix<T, 3 * M, 3 * M>;
+    const Eigen::SelfAdjointEigenSolver<Wide> parts(information);
+    const auto& all = parts.eigenvalues();
+    T least = all(3 * M - 1);
+    for (int i = 0; i < 3 * M; ++i) {
+      if (all(i) > T(1e-6) * all(3 * M - 1) && all(i) < least) least = all(i);
+    }
+    if (!(least > T(0))) return Wide::Zero();
+    return parts.eigenvectors() * all.cwiseMax(least).cwiseInverse().asDiagonal() * parts.eigenvectors().transpose();
+  }
+
+  AttitudeNoise<T> noise_;
+  Record record_;
+  typename State::Square Phi_ = State::Square::Identity();
+  Eigen::Matrix<T, 3 * M, 3 * M> steady_ = Eigen::Matrix<T, 3 * M, 3 * M>::Zero();
+  bool started_ = false;
+};
+
+}  // namespace trunnion
