@@ -23,6 +23,7 @@
 #include "trunnion/error_model/triad.hpp"
 #include "trunnion/interferometer/antenna_signals.hpp"
 #include "trunnion/interferometer/attitude_from_baselines.hpp"
+#include "trunnion/interferometer/attitude_tracker.hpp"
 #include "trunnion/interferometer/baseline.hpp"
 #include "trunnion/interferometer/broadcast_orbit.hpp"
 #include "trunnion/interferometer/double_difference.hpp"

@@ -26,12 +26,12 @@ Result<AttitudeState<T, M, Coloured>> smooth(const AttitudeRecord<T, M, Coloured
   using Square = typename State::Square;
   const Eigen::LLT<Square> predicted(next.before.P);
   if (predicted.info() != Eigen::Success) return Status::kNotObservable;
-  const Square A = predicted.solve(next.Phi * record.after.P).transpose();
+  const Square A = predicted.solve(product(next.Phi, record.after.P)).transpose();
   const typename State::Vector x = next.before.to(next.after);
   State future = next.after;
   future.carry(right_jacobian(Vec3<T>(x.template head<3>())).inverse());
   State state = record.after;
-  state.P += A * (future.P - next.before.P) * A.transpose();
+  state.P += congruence(A, Square(future.P - next.before.P));
   state.move(A * x);
   return state;
 }

@@ -68,9 +68,9 @@ struct AttitudeState {
   }
   /// P of another measure of phi: G P G^T, symmetric again.
   void carry(const Mat3<T>& G) {
-    P.template topRows<3>() = (G * P.template topRows<3>()).eval();
-    P.template leftCols<3>() = (P.template leftCols<3>() * G.transpose()).eval();
-    P = (T(0.5) * (P + P.transpose())).eval();
+    Square whole = Square::Identity();
+    whole.template topLeftCorner<3, 3>() = G;
+    P = congruence(whole, P);
   }
 };
 
@@ -143,18 +143,22 @@ class MultiplicativeEkf {
   /// nothing is changed then
   Status update(const Observation& seen, const RigidVectors<T, M>& vectors, const T& gate = T(0),
                 Innovation<T>* innovation = nullptr) {
+    using Vector = typename State::Vector;
+    using Square = typename State::Square;
     using Stack = Eigen::Matrix<T, 3 * M, 1>;
     using Wide = Eigen::Matrix<T, 3 * M, 3 * M>;
     constexpr int kMostSteps = 12;
+    constexpr T kSettled = T(2e-6);  // rad
     if (!vectors.valid() || !seen.value.allFinite() || !seen.information.allFinite()) return Status::kOutOfRange;
     State before = record_.after;
     if constexpr (Coloured) {
-      steady_ = noise_.coloured * noise_.coloured * covariance(seen.information);
+      // where not everything was seen, it is that of the last time
+      if (seen.rank == 3 * M) steady_ = noise_.coloured * noise_.coloured * seen.information.inverse();
       if (!started_) before.P.template bottomRightCorner<3 * M, 3 * M>() = steady_;
     }
     Eigen::Matrix<T, 3 * M, kStates> H = Eigen::Matrix<T, 3 * M, kStates>::Zero();
     if constexpr (Coloured) H.template rightCols<3 * M>().setIdentity();
-    typename State::Vector x = State::Vector::Zero();
+    Vector x = Vector::Zero();
     for (int step = 1; step <= kMostSteps; ++step) {
       const Vec3<T> phi = x.template head<3>();
       const Mat3<T> C = (before.q_nb * quaternion_exp(phi)).toRotationMatrix();
@@ -162,23 +166,19 @@ class MultiplicativeEkf {
       H.template leftCols<3>() = vectors.turned_by(C) * right_jacobian(phi);
       Stack r = seen.value - vectors.seen_from(C) - before.m;
       if constexpr (Coloured) r -= x.template tail<3 * M>();
-      const Stack nu = r + H * x;
-      const Eigen::Matrix<T, kStates, 3 * M> PHt = before.P * H.transpose();
-      const Wide S = H * PHt;
-      const Eigen::PartialPivLU<Wide> whole(Wide::Identity() + N * S);
-      const Wide W = whole.solve(N);  // (S + N^-1)^-1
-      const typename State::Vector next = PHt * (W * nu);
-      if (!next.allFinite()) return Status::kInconsistent;
-      const T moved = (next - x).template head<3>().norm();
-      x = next;
-      if (moved > T(1e-6)) continue;
-      const T nis = nu.dot(W * nu);
+      const Eigen::Matrix<T, kStates, 3 * M> Ht = H.transpose();
+      const Square Lambda = congruence(Ht, N);
+      const Vector pull = Ht * (N * r);
+      const Eigen::PartialPivLU<Square> step_of(Square::Identity() + product(before.P, Lambda));
+      const Vector moved = step_of.solve(before.P * pull - x);
+      x += moved;
+      if (!x.allFinite()) return Status::kInconsistent;
+      if (moved.template head<3>().norm() > kSettled) continue;
+      const T nis = r.dot(N * r) + x.dot(pull);
       if (innovation != nullptr) *innovation = {nis, seen.rank, step};
       if (gate > T(0) && !(nis <= chi_square_quantile(T(seen.rank), gate))) return Status::kInconsistent;
-      const typename State::Square rest = State::Square::Identity() - PHt * W * H;
       State after = before;
-      after.P =
-          rest * before.P * rest.transpose() + PHt * (W * whole.solve(Wide::Identity()).transpose()) * PHt.transpose();
+      after.P = congruence(Square(step_of.inverse()), Square(before.P + congruence(before.P, Lambda)));
       after.move(x);
       record_ = {before, after, Phi_};
       Phi_.setIdentity();
@@ -200,7 +200,7 @@ class MultiplicativeEkf {
     Phi.template topLeftCorner<3, 3>() = rotation_exp<T>(-angle);
     Phi.template block<3, 3>(0, 3) = sensitivity * J;
     Phi.template block<3, 3>(3, 3) *= kept;
-    state.P = Phi * state.P * Phi.transpose();
+    state.P = congruence(Phi, state.P);
     state.P.template topLeftCorner<3, 3>() +=
         q * t * t * t / T(3) * J * J.transpose() + noise_.gyro * noise_.gyro * t * Mat3<T>::Identity();
     const Mat3<T> cross = (sensitivity < T(0) ? T(-0.5) : T(0.5)) * q * t * t * J;
@@ -215,23 +215,9 @@ class MultiplicativeEkf {
       state.P.template bottomRightCorner<3 * M, 3 * M>() += (T(1) - fades * fades) * steady_;
       state.m *= fades;
     }
-    state.P = (T(0.5) * (state.P + state.P.transpose())).eval();
     state.q_nb = (state.q_nb * quaternion_exp(angle)).normalized();
     state.w *= kept;
-    Phi_ = (Phi * Phi_).eval();
-  }
-
-  /// Of what was seen; a direction that was not seen is given the variance of the worst that was.
-  static Eigen::Matrix<T, 3 * M, 3 * M> covariance(const Eigen::Matrix<T, 3 * M, 3 * M>& information) {
-    using Wide = Eigen::Matrix<T, 3 * M, 3 * M>;
-    const Eigen::SelfAdjointEigenSolver<Wide> parts(information);
-    const auto& all = parts.eigenvalues();
-    T least = all(3 * M - 1);
-    for (int i = 0; i < 3 * M; ++i) {
-      if (all(i) > T(1e-6) * all(3 * M - 1) && all(i) < least) least = all(i);
-    }
-    if (!(least > T(0))) return Wide::Zero();
-    return parts.eigenvectors() * all.cwiseMax(least).cwiseInverse().asDiagonal() * parts.eigenvectors().transpose();
+    Phi_ = product(Phi, Phi_);
   }
 
   AttitudeNoise<T> noise_;

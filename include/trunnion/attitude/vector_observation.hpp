@@ -5,12 +5,12 @@
 ///
 ///   x_k = C_nb (b_k + d_k) + v_k,   k = 1 ... M,   v ~ (0, N^-1)                                         ... (1)
 ///   C_nb = C_hat Exp(phi):   x_k - C_hat b_k = -C_hat [b_k x] phi + ...                                  ... (2)
-///   d ~ (0, s^2 P),   P = U U^T,   U the part of R^3M that no rotation of the b_k reaches                ... (3)
-///   N_b = N' - N' U (I / s^2 + U^T N' U)^-1 U^T N',   N' = (I x C)^T N (I x C)                           ... (4)
+///   d ~ (0, s^2 P),   P = I - J J^+,   J = -[b_k x]: what no rotation of the b_k reaches                 ... (3)
+///   N' = (N^-1 + s^2 P')^-1 = N - N P' (I / s^2 + P' N P')^-1 P' N,   P' = (I x C) P (I x C)^T             ... (4)
 ///
 /// N is the information, the inverse of the covariance: where the x_k are not all to be had, it is singular and (4)
 /// still holds. d is what the figure of the vectors may be other than stated: a length, the angle between two. Its
-/// part that turns the whole figure is no error but the definition of b. For one vector U is its direction: a length
+/// part that turns the whole figure is no error but the definition of b. For one vector P is along it: a length
 /// that is an observation of sigma s, and s = 0 a length that is certain.
 
 #pragma once
@@ -42,15 +42,15 @@ class RigidVectors {
   /// @param b the vectors, as columns [m], finite and none of them zero; @param sigma s [m], zero or more
   explicit RigidVectors(const Eigen::Matrix<T, 3, M>& b, const T& sigma = T(0)) : b_(b), sigma_(sigma) {
     const Eigen::Matrix<T, 3 * M, 3> J = turned_by(Mat3<T>::Identity());
-    const Square reached = J * J.transpose();
-    const Eigen::SelfAdjointEigenSolver<Square> parts(reached);
-    const T least = T(1e-4) * parts.eigenvalues()(3 * M - 1);
-    for (int i = 0; i < 3 * M; ++i) {
-      if (parts.eigenvalues()(i) < least)
-        U_.col(free_++) = parts.eigenvectors().col(i);
-      else
-        ++rank_;
+    const Eigen::SelfAdjointEigenSolver<Mat3<T>> parts(J.transpose() * J);
+    Mat3<T> inverse = Mat3<T>::Zero();
+    for (int i = 0; i < 3; ++i) {
+      const T value = parts.eigenvalues()(i);
+      if (!(value > T(1e-4) * parts.eigenvalues()(2))) continue;
+      inverse += parts.eigenvectors().col(i) * parts.eigenvectors().col(i).transpose() / value;
+      ++rank_;
     }
+    P_ = Square::Identity() - congruence(J, inverse);
   }
 
   [[nodiscard]] bool valid() const {
@@ -77,18 +77,18 @@ class RigidVectors {
   /// Eq. (4), turned back to n: the information about C b_k that is left when the d_k are not known.
   [[nodiscard]] Square loosened(const Square& N, const Mat3<T>& C_nb) const {
     if (!(sigma_ > T(0))) return N;
-    Square turned;  // (I x C) U
-    for (int k = 0; k < M; ++k) turned.template middleRows<3>(3 * k) = C_nb * U_.template middleRows<3>(3 * k);
-    const Square NU = N * turned;  // columns that are not free are zero
-    const Square inner = Square::Identity() / (sigma_ * sigma_) + turned.transpose() * NU;
-    return N - NU * inner.partialPivLu().solve(NU.transpose());
+    Square I_x_C = Square::Zero();
+    for (int k = 0; k < M; ++k) I_x_C.template block<3, 3>(3 * k, 3 * k) = C_nb;
+    const Square P = congruence(I_x_C, P_);
+    const Square NP = product(N, P);
+    const Square inner = Square::Identity() / (sigma_ * sigma_) + product(P, NP);
+    return N - product(NP, Square(inner.partialPivLu().solve(NP.transpose())));
   }
 
  private:
   Eigen::Matrix<T, 3, M> b_;
   T sigma_;
-  Square U_ = Square::Zero();
-  int free_ = 0;
+  Square P_;
   int rank_ = 0;
 };
 
@@ -147,7 +147,7 @@ Result<AttitudeEstimate<T>> most_likely_attitude(const Quaternion<T>& start, con
     const Eigen::Matrix<T, 3 * M, 3 * M> N = vectors.loosened(seen.information, C);
     const Eigen::Matrix<T, 3 * M, 3> H = vectors.turned_by(C);
     const Eigen::Matrix<T, 3 * M, 1> Nr = N * r;
-    estimate.information = H.transpose() * N * H;
+    estimate.information = congruence<T>(Eigen::Matrix<T, 3, 3 * M>(H.transpose()), N);
     estimate.cost = r.dot(Nr);
     kernel::describe(estimate);
     if (estimate.observable < 2) return Status::kNotObservable;

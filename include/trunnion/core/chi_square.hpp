@@ -17,6 +17,7 @@ namespace trunnion {
 
 /// The normal quantiles of the false alarms that are used here.
 inline constexpr double kOneInHundred = 2.3263;
+inline constexpr double kOneInThousand = 3.0902;
 inline constexpr double kOneInMillion = 4.7534;
 
 /// Eq. (1). @param n degrees of freedom, 1 or more

@@ -32,4 +32,34 @@ Mat3<T> skew(const Vec3<T>& a) {
   return S;
 }
 
+/// A B and A P A^T by plain loops: of six rows and more, Eigen's products of fixed size are code by the kilobyte, and
+/// minutes of compiling.
+template <class T, int R, int K, int C>
+Eigen::Matrix<T, R, C> product(const Eigen::Matrix<T, R, K>& A, const Eigen::Matrix<T, K, C>& B) {
+  Eigen::Matrix<T, R, C> AB;
+  for (int c = 0; c < C; ++c) {
+    for (int r = 0; r < R; ++r) {
+      T sum = T(0);
+      for (int k = 0; k < K; ++k) sum += A.coeff(r, k) * B.coeff(k, c);
+      AB.coeffRef(r, c) = sum;
+    }
+  }
+  return AB;
+}
+
+/// A P A^T of a symmetric P; exactly symmetric.
+template <class T, int R, int K>
+Eigen::Matrix<T, R, R> congruence(const Eigen::Matrix<T, R, K>& A, const Eigen::Matrix<T, K, K>& P) {
+  const Eigen::Matrix<T, R, K> AP = product(A, P);
+  Eigen::Matrix<T, R, R> APA;
+  for (int c = 0; c < R; ++c) {
+    for (int r = 0; r <= c; ++r) {
+      T sum = T(0);
+      for (int k = 0; k < K; ++k) sum += AP.coeff(r, k) * A.coeff(c, k);
+      APA.coeffRef(r, c) = APA.coeffRef(c, r) = sum;
+    }
+  }
+  return APA;
+}
+
 }  // namespace trunnion

@@ -116,7 +116,8 @@ Result<ArrayFix<T, N>> resolve_array(const SingleDifferences<T, N>& first, const
     const int n = real.pairs().count();
     fix.degrees = 2 * n + 3;
     IntegerCandidates<T, N, K> found;
-    const T farthest = chi_square_quantile(T(n + 1), options.misfit);
+    // the misfit that counts is that of both: here, wide
+    const T farthest = chi_square_quantile(T(n + 1), T(kOneInMillion));
     for (T radius = T(n + 1);; radius *= T(3)) {
       const bool last = radius >= farthest;
       real.search(known, last ? farthest : radius, farthest, options.limits, found);

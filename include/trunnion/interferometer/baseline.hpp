@@ -31,8 +31,8 @@ struct KnownLength {
 
 template <class T>
 struct FixOptions {
-  T gap = T(16);                ///< eq. (5)
-  T misfit = T(kOneInMillion);  ///< normal quantile of the chi^2 of eq. (5)
+  T gap = T(16);                 ///< eq. (5)
+  T misfit = T(kOneInThousand);  ///< normal quantile of the chi^2 of eq. (5)
   SearchLimits limits;
   bool exclude = true;  ///< whether one satellite may be left out where all do not fit
 };
@@ -67,7 +67,8 @@ class FloatBaseline {
     const Eigen::SelfAdjointEigenSolver<Mat3<T>> parts(codes.information);
     if (!(parts.eigenvalues()(0) > T(100) * std::numeric_limits<T>::epsilon() * parts.eigenvalues()(2))) return;
     code_ = codes;
-    Q_b_ = parts.eigenvectors() * parts.eigenvalues().cwiseInverse().asDiagonal() * parts.eigenvectors().transpose();
+    const Mat3<T> root = parts.eigenvectors() * parts.eigenvalues().cwiseInverse().cwiseSqrt().asDiagonal();
+    Q_b_ = root * root.transpose();
     b_ = Q_b_ * codes.moment;
     Eigen::Matrix<T, Eigen::Dynamic, 3, 0, N, 3> G(n, 3);  // over lambda
     BoundedVector<T, N> a(n);
@@ -80,9 +81,9 @@ class FloatBaseline {
       Q.row(k) /= s.wavelength;
       Q.col(k) /= s.wavelength;
     }
-    Q += G * Q_b_ * G.transpose();
     whole_ = a.array().round();
-    decorrelation_ = Decorrelation<T, N>(Q);
+    const Eigen::Matrix<T, Eigen::Dynamic, 3, 0, N, 3> U = G * root;  // U U^T = G Q_b G^T
+    decorrelation_ = Decorrelation<T, N>(Q, U);
     status_ = decorrelation_.status();
     if (status_ != Status::kOk) return;
     z_ = decorrelation_.forth() * (a - whole_);

@@ -38,7 +38,37 @@ template <class T, int N>
 class Decorrelation {
  public:
   /// @param Q covariance, symmetric; only its lower half is read
-  explicit Decorrelation(const BoundedMatrix<T, N>& Q) : L_(Q), D_(Q.rows()), A_(Q) { factor_and_reduce(); }
+  explicit Decorrelation(const BoundedMatrix<T, N>& Q) : L_(Q), D_(Q.rows()) {
+    if (factor()) reduce();
+  }
+
+  /// Of Q + U U^T, Q well conditioned and U large: phases, and the codes' vector in them. The factors of Q are updated
+  /// column by column, which loses no digits where factoring the sum would lose all of float's (Gill, Golub, Murray &
+  /// Saunders, Math. Comp. 28 (1974), 505, method C1).
+  template <int Columns>
+  Decorrelation(const BoundedMatrix<T, N>& Q, const Eigen::Matrix<T, Eigen::Dynamic, Columns, 0, N, Columns>& U)
+      : L_(Q), D_(Q.rows()) {
+    if (!factor()) return;
+    for (int column = 0; column < Columns; ++column) {
+      BoundedVector<T, N> u = U.col(column);
+      T weight = T(1);
+      for (int i = size() - 1; i >= 0; --i) {
+        const T p = u(i);
+        const T d = D_(i) + weight * p * p;
+        const T share = weight * p / d;
+        weight *= D_(i) / d;
+        D_(i) = d;
+        for (int r = 0; r < i; ++r) {
+          u(r) -= p * L_(i, r);
+          L_(i, r) += share * u(r);
+        }
+      }
+    }
+    if (!L_.allFinite() || !D_.allFinite())
+      status_ = Status::kOutOfRange;
+    else
+      reduce();
+  }
 
   /// kOk; kOutOfRange where Q is not positive definite, or not finite.
   [[nodiscard]] Status status() const { return status_; }
@@ -61,19 +91,15 @@ class Decorrelation {
   }
 
  private:
-  void factor_and_reduce() {
-    using std::abs;
-    using std::round;
-    using std::sqrt;
+  /// L_ holds Q, then its factor.
+  bool factor() {
     const int n = size();
-    A_.setIdentity();
-    Zt_ = A_;
     for (int i = n - 1; i >= 0; --i) {
       D_(i) = L_(i, i);
       // a variance that rounding has eaten is none
       if (!(D_(i) > T(0)) || !(D_(i) <= std::numeric_limits<T>::max())) {
         status_ = Status::kOutOfRange;
-        return;
+        return false;
       }
       for (int j = 0; j <= i; ++j) L_(i, j) /= D_(i);
       for (int j = 0; j < i; ++j) {
@@ -81,6 +107,13 @@ class Decorrelation {
       }
       for (int j = i + 1; j < n; ++j) L_(i, j) = T(0);
     }
+    return true;
+  }
+
+  void reduce() {
+    const int n = size();
+    A_.setIdentity(n, n);
+    Zt_.setIdentity(n, n);
     int k = n - 2;
     int untouched = n - 2;
     while (k >= 0) {

@@ -1,0 +1,313 @@
+// SPDX-FileCopyrightText: 2026 the trunnion authors
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Epoch by epoch: single differences in, attitude with its status out, in the time and memory of a microcontroller.
+///
+///   fixed       the epoch's own phases decide its whole cycles
+///   held        they do with the filter's prediction, x = C_hat b of covariance H P H^T + s^2 u u^T, in the place of a
+///               code                                                                                      ... (1)
+///   predicted   none do, and the filter goes on alone
+///   float       no filter, and codes only
+///   none        not even those
+///
+/// Cycle slips are no matter: every epoch finds its cycles anew. Half of one, where the receiver does not say so, is a
+/// satellite that does not fit. A fix against the filter is refused; after kPatience of them the filter is wrong, and
+/// starts again where they are: `restarts` counts. Without a filter, fixed and float are all there is.
+
+#pragma once
+
+#include "trunnion/attitude/multiplicative_ekf.hpp"
+#include "trunnion/interferometer/attitude_from_baselines.hpp"
+
+namespace trunnion {
+
+enum class AttitudeStatus : std::uint8_t { kNone, kFloat, kPredicted, kHeld, kFixed };
+
+/// What one epoch's phases and codes say, without a filter.
+template <class T, int M>
+struct EpochAttitude {
+  AttitudeStatus status = AttitudeStatus::kNone;
+  Status reason = Status::kOk;   ///< why it is not fixed; kNotObservable too for one that was not sure enough
+  VectorObservation<T, M> seen;  ///< fixed or held; information of a slave that has no fix is zero
+  AttitudeEstimate<T> attitude;  ///< of `seen`, or of the codes; not observable where those say too little
+  int satellites = 0;            ///< of the fix, the most of a slave
+  int excluded = 0;              ///< satellites left out
+  T misfit = T(0);               ///< chi-square with `degrees`; of several baselines, the sum
+  int degrees = 0;
+  T gap = T(0);  ///< the least
+};
+
+namespace kernel {
+
+/// The satellites that both have, in one order.
+template <class T, int N>
+void keep_common(SingleDifferences<T, N>& first, SingleDifferences<T, N>& second) {
+  int count = 0;
+  for (int i = 0; i < first.count; ++i) {
+    for (int j = count; j < second.count; ++j) {
+      if (second[j].satellite != first[i].satellite || second[j].group != first[i].group) continue;
+      first[count] = first[i];
+      std::swap(second[count], second[j]);
+      ++count;
+      break;
+    }
+  }
+  first.count = second.count = count;
+}
+
+/// Code vectors as an attitude, where they say more than nothing.
+template <class T, int M>
+void take_float(const RigidVectors<T, M>& figure, EpochAttitude<T, M>& epoch) {
+  constexpr double kMostSigma = 0.5;  // rad: beyond, no linear covariance is true
+  const auto found = attitude_from_vectors(epoch.seen, figure);
+  epoch.status = AttitudeStatus::kFloat;
+  if (!found.ok()) return;
+  if (!(found.value().covariance.trace() < T(kMostSigma * kMostSigma))) return;
+  epoch.attitude = found.value();
+}
+
+template <class T, int M, int N>
+void add_fix(int slave, const BaselineFix<T, N>& fix, EpochAttitude<T, M>& epoch) {
+  epoch.seen.value.template segment<3>(3 * slave) = fix.seen.value;
+  epoch.seen.information.template block<3, 3>(3 * slave, 3 * slave) = fix.seen.information;
+  epoch.satellites = fix.satellites > epoch.satellites ? fix.satellites : epoch.satellites;
+  epoch.excluded += fix.excluded >= 0 ? 1 : 0;
+  epoch.gap = epoch.degrees == 0 || fix.gap < epoch.gap ? fix.gap : epoch.gap;
+  epoch.misfit += fix.misfit;
+  epoch.degrees += fix.degrees;
+}
+
+/// One slave alone: its two angles; they start where the body's z is as near to down as can be.
+template <class T, int M>
+Result<AttitudeEstimate<T>> attitude_of_slave(const VectorObservation<T, M>& seen, const RigidVectors<T, M>& figure,
+                                              int slave) {
+  VectorObservation<T, 1> one;
+  one.value = seen.value.template segment<3>(3 * slave);
+  one.information = seen.information.template block<3, 3>(3 * slave, 3 * slave);
+  return attitude_from_vectors(one, RigidVectors<T, 1>(figure.b().col(slave), figure.sigma()));
+}
+
+}  // namespace kernel
+
+/// One epoch of a master and M = 1 or 2 slaves. @param sets single differences of each slave; @param prior of each
+/// baseline, of a filter, or null
+template <int M, class T, int N>
+EpochAttitude<T, M> resolve_epoch(
+    std::array<SingleDifferences<T, N>, static_cast<std::size_t>(M)> sets, const RigidVectors<T, M>& figure,
+    const FixOptions<T>& options = {},
+    const std::array<VectorObservation<T, 1>, static_cast<std::size_t>(M)>* prior = nullptr) {
+  static_assert(M == 1 || M == 2, "one slave or two");
+  EpochAttitude<T, M> epoch;
+  for (const auto& set : sets) epoch.satellites = set.count > epoch.satellites ? set.count : epoch.satellites;
+  const AttitudeStatus fixed = prior == nullptr ? AttitudeStatus::kFixed : AttitudeStatus::kHeld;
+  if constexpr (M == 2) {
+    if (prior == nullptr && figure.rank() == 3) {
+      auto common = sets;
+      kernel::keep_common(common[0], common[1]);
+      const auto joint = resolve_array(common[0], common[1], figure, options);
+      if (joint.ok() && joint.value().accepted) {
+        const ArrayFix<T, N>& fix = joint.value();
+        epoch.status = fixed;
+        epoch.seen = fix.seen;
+        epoch.attitude = fix.attitude;
+        epoch.satellites = fix.satellites;
+        epoch.misfit = fix.misfit;
+        epoch.degrees = fix.degrees;
+        epoch.gap = fix.gap;
+        return epoch;
+      }
+    }
+  }
+  // each slave by itself
+  EpochAttitude<T, M> of_codes = epoch;
+  std::array<bool, static_cast<std::size_t>(M)> has{};
+  int fixes = 0;
+  int codes = 0;
+  epoch.reason = Status::kNotObservable;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(M); ++k) {
+    const int slave = static_cast<int>(k);
+    // the length is in the prior already
+    const KnownLength<T> known{prior == nullptr ? T(figure.b().col(slave).norm()) : T(0), figure.sigma()};
+    const auto found = resolve_baseline(sets[k], known, options, prior == nullptr ? nullptr : &(*prior)[k]);
+    if (found.ok() && found.value().accepted) {
+      kernel::add_fix(slave, found.value(), epoch);
+      has[k] = true;
+      ++fixes;
+      continue;
+    }
+    if (!found.ok()) epoch.reason = found.status();
+    const FloatBaseline<T, N> real(sets[k]);
+    if (real.status() != Status::kOk) continue;
+    of_codes.seen.value.template segment<3>(3 * slave) = real.b();
+    of_codes.seen.information.template block<3, 3>(3 * slave, 3 * slave) = real.code().information;
+    ++codes;
+  }
+  if (fixes > 0) {
+    auto attitude = Result<AttitudeEstimate<T>>(Status::kNotObservable);
+    if constexpr (M == 2) {
+      if (fixes == 2) {
+        VectorObservation<T, 1> one;
+        VectorObservation<T, 1> two;
+        one.value = epoch.seen.value.template head<3>();
+        one.information = epoch.seen.information.template topLeftCorner<3, 3>();
+        two.value = epoch.seen.value.template tail<3>();
+        two.information = epoch.seen.information.template bottomRightCorner<3, 3>();
+        epoch.seen = with_common_master(one, two);
+        attitude = attitude_from_vectors(epoch.seen, figure);
+        // the angle between them is known too
+        if (!attitude.ok() || !(attitude.value().cost <= chi_square_quantile(T(3), options.misfit))) {
+          epoch.reason = Status::kInconsistent;
+          epoch.seen = {};
+          return epoch;
+        }
+      }
+    }
+    if (fixes == 1 || !attitude.ok()) attitude = kernel::attitude_of_slave(epoch.seen, figure, has[0] ? 0 : 1);
+    if (attitude.ok()) {
+      epoch.status = fixed;
+      epoch.reason = Status::kOk;
+      epoch.attitude = attitude.value();
+      epoch.seen.rank = 3 * fixes;
+      return epoch;
+    }
+    epoch.reason = attitude.status();
+    return epoch;
+  }
+  if (codes < M) return epoch;
+  of_codes.reason = epoch.reason;
+  kernel::take_float(figure, of_codes);
+  return of_codes;
+}
+
+template <class T>
+struct TrackerOptions {
+  FixOptions<T> fix;
+  AttitudeNoise<T> noise{T(0.02)};  ///< of the filter; walk [rad/s/sqrt(s)]
+  T slow_sigma = T(0.35);           ///< of the rate, or of the gyros' bias, at the start [rad/s]
+  T free_sigma = T(1);              ///< about an axis that no antenna shows [rad]
+  T gate = T(kOneInMillion);        ///< of the filter, normal quantile
+  T held_sigma = T(0.1);            ///< rad: a filter less sure than that predicts no cycles
+  T longest = T(30);                ///< s that the filter goes on alone
+};
+
+/// What comes out at an epoch.
+template <class T, int M>
+struct TrackedAttitude {
+  AttitudeStatus status = AttitudeStatus::kNone;
+  AttitudeEstimate<T> attitude;    ///< the filter's, or of the codes; observable 0: none
+  Vec3<T> slow = Vec3<T>::Zero();  ///< rate, or bias of the gyros [rad/s]
+  EpochAttitude<T, M> epoch;       ///< this epoch alone
+  Innovation<T> innovation;
+  bool refused = false;  ///< a fix that the filter did not believe
+  bool started = false;  ///< the filter started here, the first time or again
+};
+
+template <class T, int M, int N, bool Coloured = false>
+class AttitudeTracker {
+ public:
+  using Filter = MultiplicativeEkf<T, M, Coloured>;
+  using Sets = std::array<SingleDifferences<T, N>, static_cast<std::size_t>(M)>;
+  static constexpr int kPatience = 3;
+
+  AttitudeTracker(const RigidVectors<T, M>& figure, const TrackerOptions<T>& options)
+      : figure_(figure), options_(options), filter_(AttitudeEstimate<T>(), T(0), T(0), options.noise) {}
+
+  /// Gyros, the mean over @p t [s]: then the time of add() is that which is left. @param w_in_n as of the filter
+  Status turn(const T& t, const Vec3<T>& w_ib_b, const Vec3<T>& w_in_n) {
+    if (!live_) return Status::kOk;
+    return filter_.predict(t, w_ib_b, w_in_n);
+  }
+
+  /// An epoch, @p t [s] after the last, of which turn() has not had any. With gyros t is 0.
+  TrackedAttitude<T, M> add(const T& t, const Sets& sets) {
+    TrackedAttitude<T, M> out;
+    if (live_ && filter_.predict(t) != Status::kOk) live_ = false;
+    alone_ += t;
+    out.epoch = resolve_epoch<M>(sets, figure_, options_.fix);
+    if (out.epoch.status != AttitudeStatus::kFixed && live_ && surely_predicted()) {
+      const auto prior = predicted();
+      const auto led = resolve_epoch<M>(sets, figure_, options_.fix, &prior);
+      if (led.status == AttitudeStatus::kHeld) out.epoch = led;
+    }
+    const bool has = out.epoch.status == AttitudeStatus::kFixed || out.epoch.status == AttitudeStatus::kHeld;
+    const bool full = out.epoch.attitude.observable == figure_.rank();
+    if (has && live_) {
+      out.refused = filter_.update(out.epoch.seen, figure_, options_.gate, &out.innovation) != Status::kOk;
+      refusals_ = out.refused ? refusals_ + 1 : 0;
+    } else if (live_) {
+      (void)filter_.update({}, figure_);  // nothing seen: a record all the same
+    }
+    if (has && full && out.epoch.status == AttitudeStatus::kFixed && (!live_ || refusals_ >= kPatience)) {
+      restarts_ += live_ ? 1 : 0;
+      filter_ = Filter(out.epoch.attitude, options_.free_sigma, options_.slow_sigma, options_.noise);
+      live_ = out.started = true;
+      out.refused = false;
+      refusals_ = 0;
+    }
+    if (has && !out.refused) alone_ = T(0);
+    if (live_ && !(alone_ <= options_.longest)) live_ = false;
+    if (!live_) {
+      out.status = out.epoch.status;
+      out.attitude = out.epoch.attitude;
+      return out;
+    }
+    out.status = has && !out.refused ? out.epoch.status : AttitudeStatus::kPredicted;
+    out.attitude = estimate();
+    out.slow = filter_.state().w;
+    return out;
+  }
+
+  [[nodiscard]] bool live() const { return live_; }
+  [[nodiscard]] const Filter& filter() const { return filter_; }
+  [[nodiscard]] int restarts() const { return restarts_; }
+
+ private:
+  [[nodiscard]] bool surely_predicted() const {
+    const auto prior = filter_.state();
+    for (int k = 0; k < M; ++k) {
+      const Mat3<T> H = prior.q_nb.toRotationMatrix() * skew<T>(figure_.b().col(k)) / figure_.b().col(k).norm();
+      const Mat3<T> P = prior.P.template topLeftCorner<3, 3>();
+      if (!((H * P * H.transpose()).trace() < options_.held_sigma * options_.held_sigma)) return false;
+    }
+    return true;
+  }
+
+  /// Eq. (1).
+  [[nodiscard]] std::array<VectorObservation<T, 1>, static_cast<std::size_t>(M)> predicted() const {
+    std::array<VectorObservation<T, 1>, static_cast<std::size_t>(M)> prior;
+    const auto& state = filter_.state();
+    const Mat3<T> C = state.q_nb.toRotationMatrix();
+    const Mat3<T> P = state.P.template topLeftCorner<3, 3>();
+    for (std::size_t k = 0; k < static_cast<std::size_t>(M); ++k) {
+      const Vec3<T> b = figure_.b().col(static_cast<int>(k));
+      const Mat3<T> H = -C * skew(b);
+      const Vec3<T> u = C * b.normalized();
+      // a length that is certain still has a figure: a tenth of a millimetre
+      const T s = figure_.sigma() > T(1e-4) ? figure_.sigma() : T(1e-4);
+      const Mat3<T> Q = H * P * H.transpose() + s * s * u * u.transpose();
+      prior[k].value = C * b;
+      prior[k].information = Q.inverse();
+    }
+    return prior;
+  }
+
+  [[nodiscard]] AttitudeEstimate<T> estimate() const {
+    AttitudeEstimate<T> estimate;
+    estimate.q_nb = filter_.state().q_nb;
+    estimate.covariance = filter_.state().P.template topLeftCorner<3, 3>();
+    estimate.information = estimate.covariance.inverse();
+    estimate.observable = figure_.rank();
+    if (figure_.rank() < 3) estimate.free_axis = figure_.b().col(0).normalized();
+    return estimate;
+  }
+
+  RigidVectors<T, M> figure_;
+  TrackerOptions<T> options_;
+  Filter filter_;
+  bool live_ = false;
+  int refusals_ = 0;
+  int restarts_ = 0;
+  T alone_ = T(0);
+};
+
+}  // namespace trunnion
