@@ -1,17 +1,15 @@
 // SPDX-FileCopyrightText: 2026 the trunnion authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "../outputs.hpp"
 #include "../program.hpp"
 #include "../terminal.hpp"
 #include "output.hpp"
@@ -110,33 +108,6 @@ nlohmann::ordered_json summary_of(const Options& o, const Recording& recording, 
   return tree;
 }
 
-void print(const nlohmann::ordered_json& tree, const std::string& indent) {
-  for (const auto& [key, value] : tree.items()) {
-    if (value.is_object()) {
-      std::printf("%s%s\n", indent.c_str(), key.c_str());
-      print(value, indent + "  ");
-    } else if (value.is_array()) {
-      for (const auto& item : value)
-        std::printf("%s%s: %s\n", indent.c_str(), key.c_str(), item.get<std::string>().c_str());
-    } else if (value.is_number_float()) {
-      std::printf("%s%-26s %s\n", indent.c_str(), key.c_str(), figure(value.get<double>(), 10).c_str());
-    } else {
-      std::printf("%s%-26s %s\n", indent.c_str(), key.c_str(),
-                  value.is_string() ? value.get<std::string>().c_str() : value.dump().c_str());
-    }
-  }
-}
-
-void keep_inputs(const Options& o) {
-  for (const std::string& out : {o.output, o.log, o.kml, o.summary}) {
-    for (const std::string& in : {o.source.log, o.source.axis, o.source.calibration, o.truth, o.sheet}) {
-      std::error_code error;
-      if (!out.empty() && !in.empty() && std::filesystem::equivalent(out, in, error) && !error)
-        throw Error(ExitCode::kUsage, out + ": would overwrite an input");
-    }
-  }
-}
-
 /// Options that are missing, that contradict each other, or that would do nothing.
 void check(const CLI::App& app, const Options& o) {
   const auto given = [&app](const char* name) { return app.count(name) > 0; };
@@ -167,21 +138,12 @@ void check(const CLI::App& app, const Options& o) {
   if (given("--heading-deg") && (o.align == "compass" || o.align == "fine" || o.align == "swinging"))
     refuse("--heading-deg: --align " + o.align + " finds it");
   if (given("--plot") && !given("--output")) refuse("--plot draws the table: give --output too");
-  std::vector<std::string> outputs;
-  for (const std::string& path : {o.output, o.log, o.kml, o.summary}) {
-    if (path.empty()) continue;
-    const std::filesystem::path whole = std::filesystem::absolute(path).lexically_normal();
-    if (std::find(outputs.begin(), outputs.end(), whole.string()) != outputs.end())
-      refuse(path + ": two outputs in one file");
-    outputs.push_back(whole.string());
-    if (::access(whole.parent_path().c_str(), W_OK) != 0)
-      throw Error(ExitCode::kInput, path + ": its folder cannot be written");
-  }
+  check_outputs({o.output, o.log, o.kml, o.summary},
+                {o.source.log, o.source.axis, o.source.calibration, o.truth, o.sheet});
 }
 
 void run(const CLI::App& app, Options o) {
   check(app, o);
-  keep_inputs(o);
   const Modulation modulation = kModulations.at(o.modulation);
   std::optional<Truth> truth;
   if (!o.truth.empty()) truth.emplace(o.truth, o.truth_offset);
@@ -232,14 +194,14 @@ void run(const CLI::App& app, Options o) {
   if (!o.kml.empty()) write_kml(o.kml, track);
   if (!o.plots.empty()) write_plots(o.plots, o.output, o.truth);
   const nlohmann::ordered_json tree = summary_of(o, recording, motion, track, against);
-  const std::string json = tree.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  const std::string json = json_text(tree);
   if (!o.summary.empty()) io::write_whole(o.summary, json);
   for (const std::string& warning : track.warnings)
     std::fprintf(stderr, "imu_navigate: warning: %s\n", warning.c_str());
   if (o.format == "json")
     std::fputs(json.c_str(), stdout);
   else
-    print(tree, "");
+    print_summary(tree);
 }
 
 template <class V>

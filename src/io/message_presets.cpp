@@ -22,6 +22,19 @@ struct imu_counts_t { int64_t utime, sequence; int32_t gyro[3], accel[3], temper
 struct encoder_t { int64_t utime, sequence; int32_t num_axes; double angle[num_axes]; }
 struct index_t { int64_t utime, sequence; int32_t turns; }
 struct navigation_t { int64_t utime, sequence; double latitude, longitude, height, velocity[3], attitude[4]; }
+struct gnss_raw_t {
+  int64_t utime, sequence; int32_t antenna, week; double seconds; int32_t num_signals;
+  int32_t satellite[num_signals], signal[num_signals];
+  double code[num_signals], phase[num_signals], doppler[num_signals]; int8_t half_cycle[num_signals];
+}
+struct gnss_orbit_t {
+  int64_t utime, sequence; int32_t satellite, healthy, toe_week; double toe_seconds; int32_t toc_week;
+  double toc_seconds, toe_of_week, clock[3], elements[15];
+}
+struct attitude_t {
+  int64_t utime, sequence; int8_t status, observable; int16_t satellites;
+  double attitude[4], covariance[9], free_axis[3], rate[3];
+}
 package bot_core;
 struct ins_t { int64_t utime, device_time; double gyro[3], mag[3], accel[3], quat[4], pressure, rel_alt; }
 struct kvh_raw_imu_t { int64_t utime, packet_count; double delta_rotation[3], linear_acceleration[3]; }

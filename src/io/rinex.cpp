@@ -596,6 +596,12 @@ void OrbitBook::add(const std::string& path) {
                                 : Error(ExitCode::kInput, losses_.first);
 }
 
+void OrbitBook::each(const std::function<void(const BroadcastOrbit&)>& visit) const {
+  for (const auto& [satellite, orbits] : orbits_) {
+    for (const BroadcastOrbit& orbit : orbits) visit(orbit);
+  }
+}
+
 const BroadcastOrbit* OrbitBook::at(const SatelliteName& satellite, const GpsTime& time) const {
   const auto found = orbits_.find(satellite.index());
   if (found == orbits_.end()) return nullptr;

@@ -188,6 +188,17 @@ class MultiplicativeEkf {
     return Status::kInconsistent;
   }
 
+  /// About an axis of the body that nothing shows, angle and rate are kept from being less sure than that: without it
+  /// they wander off, and the iteration with them. The state stays; the covariance about @p axis means nothing.
+  void tether(const Vec3<T>& axis, const T& angle_sigma, const T& slow_sigma) {
+    typename State::Square& P = record_.after.P;
+    for (const int block : {0, 3}) {
+      const T sigma = block == 0 ? angle_sigma : slow_sigma;
+      const typename State::Vector Pa = P.template middleCols<3>(block) * axis;
+      P -= Pa * Pa.transpose() / (axis.dot(Pa.template segment<3>(block)) + sigma * sigma);
+    }
+  }
+
  private:
   /// Eq. (2)-(5). @param sensitivity of the angle to the slow state [s]
   void propagate(const Vec3<T>& angle, const T& sensitivity, const T& t) {

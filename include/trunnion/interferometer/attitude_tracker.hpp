@@ -187,6 +187,7 @@ struct TrackerOptions {
   T free_sigma = T(1);              ///< about an axis that no antenna shows [rad]
   T gate = T(kOneInMillion);        ///< of the filter, normal quantile
   T held_sigma = T(0.1);            ///< rad: a filter less sure than that predicts no cycles
+  T lost_sigma = T(0.5);            ///< rad: and less sure than that, nothing
   T longest = T(30);                ///< s that the filter goes on alone
 };
 
@@ -215,7 +216,9 @@ class AttitudeTracker {
   /// Gyros, the mean over @p t [s]: then the time of add() is that which is left. @param w_in_n as of the filter
   Status turn(const T& t, const Vec3<T>& w_ib_b, const Vec3<T>& w_in_n) {
     if (!live_) return Status::kOk;
-    return filter_.predict(t, w_ib_b, w_in_n);
+    const Status status = filter_.predict(t, w_ib_b, w_in_n);
+    if (status == Status::kOk) alone_ += t;
+    return status;
   }
 
   /// An epoch, @p t [s] after the last, of which turn() has not had any. With gyros t is 0.
@@ -224,7 +227,7 @@ class AttitudeTracker {
     if (live_ && filter_.predict(t) != Status::kOk) live_ = false;
     alone_ += t;
     out.epoch = resolve_epoch<M>(sets, figure_, options_.fix);
-    if (out.epoch.status != AttitudeStatus::kFixed && live_ && surely_predicted()) {
+    if (out.epoch.status != AttitudeStatus::kFixed && live_ && predicted_within(options_.held_sigma)) {
       const auto prior = predicted();
       const auto led = resolve_epoch<M>(sets, figure_, options_.fix, &prior);
       if (led.status == AttitudeStatus::kHeld) out.epoch = led;
@@ -244,8 +247,10 @@ class AttitudeTracker {
       out.refused = false;
       refusals_ = 0;
     }
+    if (live_ && figure_.rank() < 3)
+      filter_.tether(figure_.b().col(0).normalized(), options_.free_sigma, options_.slow_sigma);
     if (has && !out.refused) alone_ = T(0);
-    if (live_ && !(alone_ <= options_.longest)) live_ = false;
+    if (live_ && !(alone_ <= options_.longest && predicted_within(options_.lost_sigma))) live_ = false;
     if (!live_) {
       out.status = out.epoch.status;
       out.attitude = out.epoch.attitude;
@@ -262,12 +267,13 @@ class AttitudeTracker {
   [[nodiscard]] int restarts() const { return restarts_; }
 
  private:
-  [[nodiscard]] bool surely_predicted() const {
+  /// Whether no slave's direction is less sure than that [rad].
+  [[nodiscard]] bool predicted_within(const T& sigma) const {
     const auto prior = filter_.state();
     for (int k = 0; k < M; ++k) {
       const Mat3<T> H = prior.q_nb.toRotationMatrix() * skew<T>(figure_.b().col(k)) / figure_.b().col(k).norm();
       const Mat3<T> P = prior.P.template topLeftCorner<3, 3>();
-      if (!((H * P * H.transpose()).trace() < options_.held_sigma * options_.held_sigma)) return false;
+      if (!((H * P * H.transpose()).trace() < sigma * sigma)) return false;
     }
     return true;
   }

@@ -12,6 +12,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <map>
 #include <string>
@@ -135,6 +136,7 @@ class OrbitBook {
 
   /// The healthy orbit whose toe is nearest to @p time, kOrbitLasts at most; nullptr where there is none.
   [[nodiscard]] const BroadcastOrbit* at(const SatelliteName& satellite, const GpsTime& time) const;
+  void each(const std::function<void(const BroadcastOrbit&)>& visit) const;
   [[nodiscard]] const RinexLosses& losses() const { return losses_; }
   [[nodiscard]] const std::string& digest() const { return digest_; }
   [[nodiscard]] std::size_t size() const { return count_; }
