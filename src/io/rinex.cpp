@@ -514,9 +514,11 @@ void OrbitBook::add(const std::string& path) {
     ++line_number;
     return true;
   };
+  std::string first_fault;
   const auto lose = [&](const std::string& field, const std::string& what) {
     ++losses_.satellites;
-    if (losses_.first.empty()) losses_.first = input_error(path, line_number, field, what).what();
+    if (first_fault.empty()) first_fault = input_error(path, line_number, field, what).what();
+    if (losses_.first.empty()) losses_.first = first_fault;
   };
   std::string_view head;
   bool version_2 = false;
@@ -592,8 +594,8 @@ void OrbitBook::add(const std::string& path) {
     }
   }
   if (count_ == before)
-    throw losses_.first.empty() ? input_error(path, 0, "", "holds no orbit of GPS, Galileo, QZSS or BeiDou")
-                                : Error(ExitCode::kInput, losses_.first);
+    throw first_fault.empty() ? input_error(path, 0, "", "holds no orbit of GPS, Galileo, QZSS or BeiDou")
+                              : Error(ExitCode::kInput, first_fault);
 }
 
 void OrbitBook::each(const std::function<void(const BroadcastOrbit&)>& visit) const {

@@ -1,13 +1,14 @@
 // SPDX-FileCopyrightText: 2026 the trunnion authors
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Rungs 0 and 1 without exceptions, RTTI or heap. malloc itself is watched: Eigen does not go through operator new.
+/// Rungs 0 and 1 without exceptions, RTTI or heap.
 
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 
+#include "heap_trap.hpp"
 #include "trunnion/model.hpp"
 
 namespace trunnion {
@@ -45,8 +46,6 @@ TRUNNION_INSTANTIATE(long double)
 }  // namespace trunnion
 
 namespace {
-long g_allocations = 0;
-
 /// Every hot path of modulation, alignment and dead reckoning. @return something that depends on all of it
 template <class T>
 T turn_and_align() {
@@ -131,23 +130,9 @@ float turn_in_integers() {
 }
 }  // namespace
 
-extern "C" void* __libc_malloc(std::size_t);  // NOLINT(bugprone-reserved-identifier): glibc's own name
-
-extern "C" void* malloc(std::size_t size) {
-  ++g_allocations;
-  return __libc_malloc(size);
-}
-
 int main() {
   using namespace trunnion;
-  // the trap is live: a dynamic matrix springs it
-  const long before_trap = g_allocations;
-  {
-    const Eigen::VectorXd sprung =
-        Eigen::VectorXd::Ones(100 + std::rand() % 2);  // NOLINT: any size the compiler cannot know
-    if (sprung.sum() < 100.0) return 2;
-  }
-  if (g_allocations == before_trap) {
+  if (!trap_is_live()) {
     std::puts("the heap trap is not live");
     return 1;
   }

@@ -1,0 +1,125 @@
+// SPDX-FileCopyrightText: 2026 the trunnion authors
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Ten thousand mutated RINEX files, and as many messages, through the whole chain to the attitude: each is read or
+/// refused, and what comes out is finite.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "fuzz/mutate.hpp"
+#include "io/rinex_text.hpp"
+#include "matchers/temporary_folder.hpp"
+#include "trunnion/core/error.hpp"
+#include "trunnion/io/antenna_epoch.hpp"
+#include "trunnion/io/gnss_messages.hpp"
+
+namespace trunnion::io {
+namespace {
+
+constexpr int kMutations = 10000;
+
+std::vector<SignalName> signals() {
+  return {SignalName::parse("G1C"), SignalName::parse("G2W"), SignalName::parse("E1C"), SignalName::parse("C2I")};
+}
+
+/// As far as there is anything to compute.
+void attitude_from(const ObservationEpoch& epoch, const OrbitBook& orbits) {
+  LeftOut left_out;
+  const auto antenna = antenna_epoch(epoch, signals(), orbits, left_out);
+  const auto place = antenna_place(antenna);
+  AntennaPlace there;
+  if (place.ok()) {
+    ASSERT_TRUE(place.value().r.allFinite());
+    there = place.value();
+  } else {
+    there.r = Vec3<double>(-3817680.98, 3562840.07, 3650158.45);
+  }
+  const auto set = single_differences<double>(antenna, antenna, there, {});
+  if (!set.ok()) return;
+  const auto fix = resolve_baseline(set.value(), KnownLength<double>{1.0, 0.01});
+  if (fix.ok()) {
+    ASSERT_TRUE(fix.value().seen.value.allFinite());
+  }
+}
+
+TEST(Mutations, OfRinex) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "fuzz.rnx";
+  const std::string seeds[] = {observations_3(), observations_2(), orbits_3(), orbits_2()};
+  OrbitBook good;
+  good.add(folder.file("good.nav", orbits_3()));
+  std::mt19937_64 rng(20261126);
+  int refused = 0;
+  for (int i = 0; i < kMutations; ++i) {
+    const int kind = i % 4;
+    write_whole(path, mutate(seeds[kind], rng));
+    try {
+      if (kind < 2) {
+        ObservationReader reader(path);
+        reader.choose(signals());
+        for (ObservationEpoch epoch; reader.next(epoch);) attitude_from(epoch, good);
+      } else {
+        OrbitBook book;
+        book.add(path);
+        book.each([](const BroadcastOrbit& orbit) {
+          for (const double t : {0.0, 3600.0}) {
+            const auto place = satellite_when_sending(orbit, orbit.toe + t, 2.2e7);
+            if (place.ok()) {
+              ASSERT_TRUE(place.value().r.allFinite() && std::isfinite(place.value().clock));
+            }
+          }
+        });
+      }
+    } catch (const Error& e) {
+      ++refused;
+      ASSERT_EQ(e.code(), ExitCode::kInput) << e.what();
+    }
+  }
+  std::printf("[ FIGURE   ] RINEX: %d mutations, %d read, %d refused\n", kMutations, kMutations - refused, refused);
+  EXPECT_GT(refused, kMutations / 100);
+  EXPECT_LT(refused, kMutations);
+}
+
+TEST(Mutations, OfGnssMessages) {
+  const TemporaryFolder folder;
+  ObservationReader reader(folder.file("a.obs", observations_3()));
+  reader.choose(signals());
+  OrbitBook good;
+  good.add(folder.file("a.nav", orbits_3()));
+  GnssRaw raw;
+  ASSERT_TRUE(reader.next(raw.epoch));
+  std::string seeds[3];
+  encode_gnss_raw(raw, signals(), seeds[0]);
+  encode_gnss_orbit(1, 2, *good.at({SatelliteSystem::kGps, 5}, raw.epoch.time), seeds[1]);
+  encode_attitude({}, seeds[2]);
+  std::mt19937_64 rng(20261127);
+  int decoded = 0;
+  for (int i = 0; i < 3 * kMutations; ++i) {
+    const std::string message = mutate(seeds[i % 3], rng);
+    if (i % 3 == 0) {
+      const auto read = decode_gnss_raw(message, signals());
+      if (read) attitude_from(read->epoch, good);
+      decoded += read.has_value();
+    } else if (i % 3 == 1) {
+      const auto orbit = decode_gnss_orbit(message);
+      if (orbit) {
+        const auto place = satellite_at(*orbit, orbit->toe);
+        if (place.ok()) {
+          ASSERT_TRUE(place.value().r.allFinite());
+        }
+      }
+      decoded += orbit.has_value();
+    } else {
+      decoded += decode_attitude(message).has_value();
+    }
+  }
+  std::printf("[ FIGURE   ] GNSS messages: %d mutations, %d decoded\n", 3 * kMutations, decoded);
+  EXPECT_GT(decoded, 100);
+  EXPECT_LT(decoded, 3 * kMutations);
+}
+
+}  // namespace
+}  // namespace trunnion::io
