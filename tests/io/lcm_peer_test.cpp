@@ -10,8 +10,12 @@
 
 #include "matchers/refuses.hpp"
 #include "matchers/temporary_folder.hpp"
+#include "trunnion/io/gnss_messages.hpp"
 #include "trunnion/io/lcm_recording.hpp"
+#include "trunnion_lcm/attitude_t.hpp"
 #include "trunnion_lcm/encoder_t.hpp"
+#include "trunnion_lcm/gnss_orbit_t.hpp"
+#include "trunnion_lcm/gnss_raw_t.hpp"
 #include "trunnion_lcm/imu_batch_t.hpp"
 #include "trunnion_lcm/imu_t.hpp"
 #include "trunnion_lcm/index_t.hpp"
@@ -26,6 +30,98 @@ TEST(LcmPeer, TheFingerprintsAreThoseOfTheGeneratedTypes) {
   EXPECT_EQ(static_cast<std::uint64_t>(trunnion_lcm::imu_batch_t::getHash()), kImuBatchFingerprint);
   EXPECT_EQ(static_cast<std::uint64_t>(trunnion_lcm::index_t::getHash()), kIndexFingerprint);
   EXPECT_EQ(static_cast<std::uint64_t>(trunnion_lcm::navigation_t::getHash()), kNavigationFingerprint);
+  EXPECT_EQ(static_cast<std::uint64_t>(trunnion_lcm::gnss_raw_t::getHash()), kGnssRawFingerprint);
+  EXPECT_EQ(static_cast<std::uint64_t>(trunnion_lcm::gnss_orbit_t::getHash()), kGnssOrbitFingerprint);
+  EXPECT_EQ(static_cast<std::uint64_t>(trunnion_lcm::attitude_t::getHash()), kAttitudeFingerprint);
+}
+
+template <class Message>
+std::string encoded(const Message& message) {
+  std::string bytes(static_cast<std::size_t>(message.getEncodedSize()), '\0');
+  EXPECT_EQ(message.encode(bytes.data(), 0, static_cast<int>(bytes.size())), static_cast<int>(bytes.size()));
+  return bytes;
+}
+
+TEST(LcmPeer, ReadsOurPhasesOrbitsAndAttitudesAndWeItsOwn) {
+  const std::vector<SignalName> signals = {SignalName::parse("G1C"), SignalName::parse("C2I")};
+  GnssRaw raw;
+  raw.utime = 42;
+  raw.sequence = 7;
+  raw.antenna = 1;
+  raw.epoch.time = {2320, 116400.25};
+  for (int i = 0; i < 3; ++i) {
+    SignalObservation o;
+    o.satellite = {i == 2 ? SatelliteSystem::kBeidou : SatelliteSystem::kGps, 5 + i};
+    o.signal = i == 2 ? 1 : 0;
+    o.code = 2.1e7 + i;
+    o.phase = 1.1e8 + 0.25 * i;
+    o.doppler = -100.0 * i;
+    o.half_cycle = i == 1;
+    raw.epoch.at.push_back(o);
+  }
+  std::string message;
+  encode_gnss_raw(raw, signals, message);
+  trunnion_lcm::gnss_raw_t peer;
+  ASSERT_EQ(peer.decode(message.data(), 0, static_cast<int>(message.size())), static_cast<int>(message.size()));
+  EXPECT_EQ(peer.antenna, 1);
+  EXPECT_EQ(peer.seconds, 116400.25);
+  ASSERT_EQ(peer.num_signals, 3);
+  EXPECT_EQ(peer.satellite[2], 307);
+  EXPECT_EQ(peer.signal[0], '1' * 256 + 'C');
+  EXPECT_EQ(peer.phase[1], 1.1e8 + 0.25);
+  EXPECT_EQ(peer.half_cycle[1], 1);
+  EXPECT_EQ(encoded(peer), message);
+  const auto back = decode_gnss_raw(message, {signals[1]});
+  ASSERT_TRUE(back.has_value());
+  ASSERT_EQ(back->epoch.at.size(), 1U) << "the signal that was asked for";
+  EXPECT_EQ(back->epoch.at[0].satellite.text(), "C07");
+  EXPECT_EQ(back->epoch.at[0].doppler, -200.0);
+
+  BroadcastOrbit orbit;
+  orbit.system = SatelliteSystem::kGalileo;
+  orbit.number = 12;
+  orbit.toe = {2320, 7200.0};
+  orbit.toc = {2320, 7200.0};
+  orbit.toe_of_week = 7200.0;
+  orbit.sqrt_a = 5440.6;
+  orbit.cis = 1e-8;
+  orbit.af1 = 1e-12;
+  encode_gnss_orbit(1, 2, orbit, message);
+  trunnion_lcm::gnss_orbit_t peer_orbit;
+  ASSERT_EQ(peer_orbit.decode(message.data(), 0, static_cast<int>(message.size())), static_cast<int>(message.size()));
+  EXPECT_EQ(peer_orbit.satellite, 112);
+  EXPECT_EQ(peer_orbit.elements[0], 5440.6);
+  EXPECT_EQ(peer_orbit.elements[14], 1e-8);
+  EXPECT_EQ(peer_orbit.clock[1], 1e-12);
+  const auto same = decode_gnss_orbit(message);
+  ASSERT_TRUE(same.has_value());
+  EXPECT_EQ(satellite_at(*same, {2320, 8000.0}).value().r, satellite_at(orbit, {2320, 8000.0}).value().r);
+
+  AttitudeMessage attitude;
+  attitude.utime = 9;
+  attitude.status = AttitudeStatus::kFixed;
+  attitude.satellites = 300;
+  attitude.attitude.observable = 2;
+  attitude.attitude.q_nb = Quaternion<double>(0.5, -0.5, 0.5, -0.5);
+  attitude.attitude.covariance(0, 2) = 0.25;
+  attitude.attitude.free_axis.x() = 1.0;
+  encode_attitude(attitude, message);
+  trunnion_lcm::attitude_t peer_attitude;
+  ASSERT_EQ(peer_attitude.decode(message.data(), 0, static_cast<int>(message.size())),
+            static_cast<int>(message.size()));
+  EXPECT_EQ(peer_attitude.status, 4);
+  EXPECT_EQ(peer_attitude.observable, 2);
+  EXPECT_EQ(peer_attitude.satellites, 300);
+  EXPECT_EQ(peer_attitude.attitude[3], -0.5);
+  EXPECT_EQ(peer_attitude.covariance[2], 0.25);
+  EXPECT_TRUE(std::isnan(peer_attitude.rate[0])) << "not estimated";
+  const auto decoded = decode_attitude(message);
+  ASSERT_TRUE(decoded.has_value());
+  EXPECT_EQ(decoded->satellites, 300);
+  EXPECT_EQ(decoded->attitude.covariance(0, 2), 0.25);
+  EXPECT_FALSE(decode_attitude(message.substr(1)).has_value());
+  EXPECT_FALSE(decode_gnss_orbit(message).has_value());
+  EXPECT_FALSE(decode_gnss_raw(message, signals).has_value());
 }
 
 TEST(LcmPeer, ReadsOurNavigationAndWeItsIndex) {
@@ -77,7 +173,7 @@ TEST(LcmPeer, ReadsWhatWeWrite) {
     EXPECT_EQ(event->eventnum, 2 * i);
     EXPECT_EQ(event->timestamp, 100 + i);
     EXPECT_EQ(event->channel, "IMU");
-    trunnion_lcm::imu_t imu;
+    trunnion_lcm::imu_t imu{};
     ASSERT_EQ(imu.decode(event->data, 0, event->datalen), event->datalen);
     EXPECT_EQ(imu.utime, 100 + i);
     EXPECT_EQ(imu.sequence, i);
@@ -85,7 +181,7 @@ TEST(LcmPeer, ReadsWhatWeWrite) {
     EXPECT_EQ(imu.specific_force[2], 3.0);
     event = peer.readNextEvent();
     ASSERT_NE(event, nullptr);
-    trunnion_lcm::encoder_t encoder;
+    trunnion_lcm::encoder_t encoder{};
     ASSERT_EQ(encoder.decode(event->data, 0, event->datalen), event->datalen);
     ASSERT_EQ(encoder.num_axes, 2);
     EXPECT_EQ(encoder.angle[0], 0.25 * i);

@@ -16,6 +16,7 @@
 namespace trunnion {
 
 /// The normal quantiles of the false alarms that are used here.
+inline constexpr double kOneInSix = 1.0;
 inline constexpr double kOneInHundred = 2.3263;
 inline constexpr double kOneInThousand = 3.0902;
 inline constexpr double kOneInMillion = 4.7534;

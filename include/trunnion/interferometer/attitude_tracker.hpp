@@ -87,38 +87,14 @@ Result<AttitudeEstimate<T>> attitude_of_slave(const VectorObservation<T, M>& see
   return attitude_from_vectors(one, RigidVectors<T, 1>(figure.b().col(slave), figure.sigma()));
 }
 
-}  // namespace kernel
-
-/// One epoch of a master and M = 1 or 2 slaves. @param sets single differences of each slave; @param prior of each
-/// baseline, of a filter, or null
+/// Each slave by itself.
 template <int M, class T, int N>
-EpochAttitude<T, M> resolve_epoch(
-    std::array<SingleDifferences<T, N>, static_cast<std::size_t>(M)> sets, const RigidVectors<T, M>& figure,
-    const FixOptions<T>& options = {},
-    const std::array<VectorObservation<T, 1>, static_cast<std::size_t>(M)>* prior = nullptr) {
-  static_assert(M == 1 || M == 2, "one slave or two");
+EpochAttitude<T, M> resolve_apart(const std::array<SingleDifferences<T, N>, static_cast<std::size_t>(M)>& sets,
+                                  const RigidVectors<T, M>& figure, const FixOptions<T>& options,
+                                  const std::array<VectorObservation<T, 1>, static_cast<std::size_t>(M)>* prior,
+                                  AttitudeStatus fixed) {
   EpochAttitude<T, M> epoch;
   for (const auto& set : sets) epoch.satellites = set.count > epoch.satellites ? set.count : epoch.satellites;
-  const AttitudeStatus fixed = prior == nullptr ? AttitudeStatus::kFixed : AttitudeStatus::kHeld;
-  if constexpr (M == 2) {
-    if (prior == nullptr && figure.rank() == 3) {
-      auto common = sets;
-      kernel::keep_common(common[0], common[1]);
-      const auto joint = resolve_array(common[0], common[1], figure, options);
-      if (joint.ok() && joint.value().accepted) {
-        const ArrayFix<T, N>& fix = joint.value();
-        epoch.status = fixed;
-        epoch.seen = fix.seen;
-        epoch.attitude = fix.attitude;
-        epoch.satellites = fix.satellites;
-        epoch.misfit = fix.misfit;
-        epoch.degrees = fix.degrees;
-        epoch.gap = fix.gap;
-        return epoch;
-      }
-    }
-  }
-  // each slave by itself
   EpochAttitude<T, M> of_codes = epoch;
   std::array<bool, static_cast<std::size_t>(M)> has{};
   int fixes = 0;
@@ -130,7 +106,7 @@ EpochAttitude<T, M> resolve_epoch(
     const KnownLength<T> known{prior == nullptr ? T(figure.b().col(slave).norm()) : T(0), figure.sigma()};
     const auto found = resolve_baseline(sets[k], known, options, prior == nullptr ? nullptr : &(*prior)[k]);
     if (found.ok() && found.value().accepted) {
-      kernel::add_fix(slave, found.value(), epoch);
+      add_fix(slave, found.value(), epoch);
       has[k] = true;
       ++fixes;
       continue;
@@ -162,7 +138,7 @@ EpochAttitude<T, M> resolve_epoch(
         }
       }
     }
-    if (fixes == 1 || !attitude.ok()) attitude = kernel::attitude_of_slave(epoch.seen, figure, has[0] ? 0 : 1);
+    if (fixes == 1 || !attitude.ok()) attitude = attitude_of_slave(epoch.seen, figure, has[0] ? 0 : 1);
     if (attitude.ok()) {
       epoch.status = fixed;
       epoch.reason = Status::kOk;
@@ -175,8 +151,46 @@ EpochAttitude<T, M> resolve_epoch(
   }
   if (codes < M) return epoch;
   of_codes.reason = epoch.reason;
-  kernel::take_float(figure, of_codes);
+  take_float(figure, of_codes);
   return of_codes;
+}
+
+}  // namespace kernel
+
+/// One epoch of a master and M = 1 or 2 slaves. @param sets single differences of each slave; @param prior of each
+/// baseline, of a filter, or null
+template <int M, class T, int N>
+EpochAttitude<T, M> resolve_epoch(
+    std::array<SingleDifferences<T, N>, static_cast<std::size_t>(M)> sets, const RigidVectors<T, M>& figure,
+    const FixOptions<T>& options = {},
+    const std::array<VectorObservation<T, 1>, static_cast<std::size_t>(M)>* prior = nullptr) {
+  static_assert(M == 1 || M == 2, "one slave or two");
+  EpochAttitude<T, M> epoch;
+  const AttitudeStatus fixed = prior == nullptr ? AttitudeStatus::kFixed : AttitudeStatus::kHeld;
+  if constexpr (M == 2) {
+    if (prior == nullptr && figure.rank() == 3) {
+      auto common = sets;
+      kernel::keep_common(common[0], common[1]);
+      const auto joint = resolve_array(common[0], common[1], figure, options);
+      if (joint.ok() && joint.value().accepted) {
+        const ArrayFix<T, N>& fix = joint.value();
+        epoch.status = fixed;
+        epoch.seen = fix.seen;
+        epoch.attitude = fix.attitude;
+        epoch.satellites = fix.satellites;
+        epoch.misfit = fix.misfit;
+        epoch.degrees = fix.degrees;
+        epoch.gap = fix.gap;
+        // one that does not fit well is asked for of each slave by itself, which leaves satellites out
+        if (!(fix.misfit > chi_square_quantile(T(fix.degrees), T(kOneInSix)))) return epoch;
+        const EpochAttitude<T, 2> apart = kernel::resolve_apart<2>(sets, figure, options, prior, fixed);
+        const bool rival = apart.status == fixed && apart.excluded > 0 && apart.attitude.observable == 3;
+        return rival && quaternion_log<T>(apart.attitude.q_nb.conjugate() * fix.attitude.q_nb).norm() > T(0.05) ? apart
+                                                                                                                : epoch;
+      }
+    }
+  }
+  return kernel::resolve_apart<M>(sets, figure, options, prior, fixed);
 }
 
 template <class T>
@@ -238,7 +252,9 @@ class AttitudeTracker {
       out.refused = filter_.update(out.epoch.seen, figure_, options_.gate, &out.innovation) != Status::kOk;
       refusals_ = out.refused ? refusals_ + 1 : 0;
     } else if (live_) {
-      (void)filter_.update({}, figure_);  // nothing seen: a record all the same
+      VectorObservation<T, M> nothing;
+      nothing.rank = 0;
+      (void)filter_.update(nothing, figure_);  // a record all the same
     }
     if (has && full && out.epoch.status == AttitudeStatus::kFixed && (!live_ || refusals_ >= kPatience)) {
       restarts_ += live_ ? 1 : 0;

@@ -60,13 +60,13 @@ class FloatBaseline {
     add_centred(
         set, [&](int i) { return set[i].code; }, [&](int i) { return T(2) * set[i].code_sigma * set[i].code_sigma; },
         codes);
+    code_ = codes;
     if (prior != nullptr) {
       codes.information += prior->information;
       codes.moment += prior->information * prior->value;
     }
     const Eigen::SelfAdjointEigenSolver<Mat3<T>> parts(codes.information);
     if (!(parts.eigenvalues()(0) > T(100) * std::numeric_limits<T>::epsilon() * parts.eigenvalues()(2))) return;
-    code_ = codes;
     const Mat3<T> root = parts.eigenvectors() * parts.eigenvalues().cwiseInverse().cwiseSqrt().asDiagonal();
     Q_b_ = root * root.transpose();
     b_ = Q_b_ * codes.moment;
@@ -109,7 +109,7 @@ class FloatBaseline {
   /// Eq. (1) and its covariance.
   [[nodiscard]] const Vec3<T>& b() const { return b_; }
   [[nodiscard]] const Mat3<T>& Q_b() const { return Q_b_; }
-  /// Of codes and prior.
+  /// Of the codes alone.
   [[nodiscard]] const BaselineSum<T>& code() const { return code_; }
   [[nodiscard]] const Decorrelation<T, N>& decorrelation() const { return decorrelation_; }
 
@@ -155,7 +155,7 @@ class FloatBaseline {
 /// The baseline of an epoch, its whole cycles, and what speaks for them.
 template <class T, int N>
 struct BaselineFix {
-  VectorObservation<T, 1> seen;  ///< b [m] of phases and codes, and its information
+  VectorObservation<T, 1> seen;  ///< b [m] of phases and codes, and its information; of a prior, none of it
   Vec3<T> float_b = Vec3<T>::Zero();
   Mat3<T> float_covariance = Mat3<T>::Zero();
   std::array<T, static_cast<std::size_t>(N)> cycles{};  ///< of each single difference; the references have 0
@@ -231,8 +231,10 @@ Result<BaselineFix<T, N>> resolve_all(const SingleDifferences<T, N>& set, const 
 
 /// The baseline of greatest likelihood, eq. (1)-(5).
 ///
-/// Where no whole numbers fit, or those that fit best do not fit well, each satellite is left out in turn, seven or
-/// more being there; the fit that is accepted with the least misfit stands.
+/// Where no whole numbers fit, or those that fit best do not fit well, there being seven satellites or more, each is
+/// left out in turn: one with half a cycle bends the whole numbers of the others until they fit, in a way. A fit
+/// without one that has other whole numbers is a rival, at kExclusion more. Where nothing fits but what leaves the
+/// length out, the length is wrong, and no satellite is blamed for it.
 /// @param prior of b, of a filter: a fix that leans on it is held, not found
 /// @return kNotObservable with fewer than three double differences or a sky that leaves a direction open; kInconsistent
 /// when nothing fits: a wrong length, half cycles, an antenna that is not where it should be; kTimeOut when the limit
@@ -241,19 +243,24 @@ template <class T, int N>
 Result<BaselineFix<T, N>> resolve_baseline(const SingleDifferences<T, N>& set, const KnownLength<T>& known,
                                            const FixOptions<T>& options = {},
                                            const VectorObservation<T, 1>* prior = nullptr) {
+  constexpr double kExclusion = 12.0;  // -2 ln of how often a satellite is half a cycle off: one in 400
   if (set.count < 0 || set.count > N || !(known.length >= T(0)) || !(known.sigma >= T(0))) return Status::kOutOfRange;
   Result<BaselineFix<T, N>> whole = kernel::resolve_all(set, known, options, prior);
-  if (whole.status() != Status::kInconsistent || !options.exclude || set.count < 7) return whole;
-  if (known.length > T(0)) {  // does all fit, but for the length?
+  if (!options.exclude || set.count < 7) return whole;
+  const bool misfits = whole.status() == Status::kInconsistent;
+  const bool doubtful =
+      whole.ok() && whole.value().misfit > chi_square_quantile(T(whole.value().degrees), T(kOneInSix));
+  if (!misfits && !doubtful) return whole;
+  if (misfits && known.length > T(0)) {  // does all fit, but for the length?
     const Result<BaselineFix<T, N>> free = kernel::resolve_all(set, KnownLength<T>(), options, prior);
     if (free.ok() && free.value().accepted) return whole;
   }
   // to leave one out is to choose among as many fits: each must be a good one
   FixOptions<T> strict = options;
   strict.misfit = T(kOneInHundred);
-  Result<BaselineFix<T, N>> best = whole;
+  Result<BaselineFix<T, N>> best = Status::kInconsistent;
   for (int i = 0; i < set.count; ++i) {
-    Result<BaselineFix<T, N>> rest = kernel::resolve_all(set.without(i), known, strict, prior);
+    const Result<BaselineFix<T, N>> rest = kernel::resolve_all(set.without(i), known, strict, prior);
     if (!rest.ok() || !rest.value().accepted) continue;
     if (best.ok() && best.value().misfit <= rest.value().misfit) continue;
     BaselineFix<T, N> fix = rest.value();
@@ -263,7 +270,17 @@ Result<BaselineFix<T, N>> resolve_baseline(const SingleDifferences<T, N>& set, c
     fix.excluded = i;
     best = fix;
   }
-  return best;
+  if (misfits || !best.ok()) return misfits ? best : whole;
+  // other whole numbers, or the same?
+  T wavelength = set[0].wavelength;
+  for (int i = 1; i < set.count; ++i) wavelength = set[i].wavelength < wavelength ? set[i].wavelength : wavelength;
+  if ((best.value().seen.value - whole.value().seen.value).norm() < T(0.25) * wavelength) return whole;
+  const T ahead = best.value().misfit + T(kExclusion) - whole.value().misfit;
+  if (ahead < T(0)) return best;
+  BaselineFix<T, N> fix = whole.value();
+  fix.gap = ahead < fix.gap ? ahead : fix.gap;
+  fix.accepted = fix.accepted && fix.gap > options.gap;
+  return fix;
 }
 
 }  // namespace trunnion
