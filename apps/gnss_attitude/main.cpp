@@ -364,18 +364,21 @@ class Run {
     for (const auto& [key, value] : tree.items()) whole[key] = value;
     if (engine_->restarts() > 0) whole["filter_restarts"] = engine_->restarts();
     whole["warnings"] = warnings_;
-    if (!o_.output.empty()) write_attitude_csv(o_.output, solutions_);
-    if (!o_.log.empty()) write_attitude_log(o_.log, o_.out_channel, solutions_);
-    if (!o_.summary.empty()) io::write_whole(o_.summary, json_text(whole));
+    const bool refused = fixed == 0 && !live_;
+    if (!refused) {
+      if (!o_.output.empty()) write_attitude_csv(o_.output, solutions_);
+      if (!o_.log.empty()) write_attitude_log(o_.log, o_.out_channel, solutions_);
+      if (!o_.summary.empty()) io::write_whole(o_.summary, json_text(whole));
+    }
     if (o_.format == "json")
       std::fputs(json_text(whole).c_str(), stdout);
     else
       print_summary(whole);
-    if (fixed == 0 && !live_) {
+    if (refused) {
       std::fprintf(stderr, "gnss_attitude: no epoch could be fixed: %s\n", why_not().c_str());
       return ExitCode::kNumerics;
     }
-    return live_ && fixed == 0 && solutions_.empty() ? ExitCode::kInterrupted : ExitCode::kDone;
+    return ExitCode::kDone;
   }
 
   [[nodiscard]] std::string why_not() const {

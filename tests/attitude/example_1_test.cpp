@@ -86,11 +86,11 @@ Score of_single_epochs(const std::vector<Flight>& runs, const ThreeAntennas& arr
 }
 
 /// The paper's filter; @p settle epochs at the start are not scored.
-Score of_paper(const std::vector<Flight>& runs, bool weighted, double walk, double sigma_q, int settle) {
+Score of_paper(const std::vector<Flight>& runs, bool weighted, double beta, double walk, double sigma_q, int settle) {
   Score score;
   for (const Flight& run : runs) {
     const std::vector<Quaternion<double>>& z = weighted ? run.weighted_computed : run.computed;
-    QuaternionEkf<double> filter(z[0], 0.0, walk, sigma_q * sigma_q, 0.35);
+    QuaternionEkf<double> filter(z[0], beta, walk, sigma_q * sigma_q, 0.35);
     for (std::size_t k = 0; k < z.size(); ++k) {
       if (k > 0) {
         (void)filter.predict(1.0);
@@ -141,9 +141,11 @@ Best best_of(const std::vector<Flight>& runs, const ThreeAntennas& array, double
   for (const double walk_deg : {0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0}) {
     const double walk = walk_deg * kRadPerDeg;
     for (const double factor : {0.5, 1.0, 2.0, 4.0}) {
-      best.paper = std::min(best.paper, of_paper(runs, false, walk, factor * sigma, settle).euler_deg());
-      best.paper_weighted =
-          std::min(best.paper_weighted, of_paper(runs, true, walk, factor * sigma, settle).euler_deg());
+      for (const double beta : {0.0, 1.0 / 60.0}) {  // random walk and Gauss-Markov
+        best.paper = std::min(best.paper, of_paper(runs, false, beta, walk, factor * sigma, settle).euler_deg());
+        best.paper_weighted =
+            std::min(best.paper_weighted, of_paper(runs, true, beta, walk, factor * sigma, settle).euler_deg());
+      }
     }
     const auto [filter, smoother] = of_filter(runs, array, walk, settle);
     best.filter = std::min(best.filter, filter);
