@@ -4,6 +4,7 @@
 #include "engine.hpp"
 
 #include <cmath>
+#include <deque>
 #include <optional>
 
 #include "trunnion/attitude/fixed_interval_smoother.hpp"
@@ -97,12 +98,8 @@ class TrackedEngine final : public EngineOf<M> {
       : Base(options), tracker_(this->figure_, options.tracker), keeps_(options.keep_records) {}
 
   void gyro(std::int64_t utime, double t, const Vec3<double>& w_ib_b) override {
-    (void)utime;
-    has_gyro_ = true;
-    const Vec3<double> earth = this->has_place_
-                                   ? Vec3<double>(north_from_earth(this->place_.r) * Vec3<double>(0.0, 0.0, kEarthRate))
-                                   : Vec3<double>(Vec3<double>::Zero());
-    (void)tracker_.turn(t, w_ib_b, earth);
+    constexpr std::size_t kMostWaiting = 1000000;
+    if (waiting_.size() < kMostWaiting) waiting_.push_back({utime, t, w_ib_b});
   }
 
   void smooth(std::vector<Solution>& solutions) override {
@@ -130,11 +127,12 @@ class TrackedEngine final : public EngineOf<M> {
 
  private:
   EpochAttitude<double, M> resolve(double t, const typename Base::Sets& sets, Solution& solution) override {
-    const auto out = tracker_.add(has_gyro_ ? 0.0 : std::min(t, kLongestGap), sets);
+    if (this->options_.driven) turn(solution.utime, t);
+    const auto out = tracker_.add(this->options_.driven ? 0.0 : std::min(t, kLongestGap), sets);
     solution.status = out.status;
     solution.attitude = out.attitude;
     solution.rate = out.slow;
-    solution.has_rate = !has_gyro_ && tracker_.live();
+    solution.has_rate = !this->options_.driven && tracker_.live();
     solution.started = out.started;
     solution.refused = out.refused;
     if (keeps_) {
@@ -144,9 +142,44 @@ class TrackedEngine final : public EngineOf<M> {
     return out.epoch;
   }
 
+  /// By the gyros up to @p utime, @p t [s] after the last epoch; of a sample that reaches beyond, its share.
+  void turn(std::int64_t utime, double t) {
+    constexpr double kMostMissing = 0.5;  // s of an epoch that no gyro saw
+    const Vec3<double> earth = this->has_place_
+                                   ? Vec3<double>(north_from_earth(this->place_.r) * Vec3<double>(0.0, 0.0, kEarthRate))
+                                   : Vec3<double>(Vec3<double>::Zero());
+    double seen = 0.0;
+    while (!waiting_.empty()) {
+      Sample& sample = waiting_.front();
+      const double beyond = 1e-6 * static_cast<double>(sample.utime - utime);
+      const double share = std::min(sample.t, sample.t - beyond);
+      if (share <= 0.0) break;
+      (void)tracker_.turn(share, sample.w, earth);
+      seen += share;
+      last_rate_ = sample.w;
+      if (beyond > 0.0) {
+        sample.t -= share;
+        break;
+      }
+      waiting_.pop_front();
+    }
+    const double missing = t - seen;
+    if (missing > kMostMissing)
+      tracker_.lose();
+    else if (missing > 0.0)
+      (void)tracker_.turn(missing, last_rate_, earth);
+  }
+
+  struct Sample {
+    std::int64_t utime;
+    double t;
+    Vec3<double> w;
+  };
+
   Tracker tracker_;
   bool keeps_;
-  bool has_gyro_ = false;
+  std::deque<Sample> waiting_;
+  Vec3<double> last_rate_ = Vec3<double>::Zero();
   std::vector<typename Tracker::Filter::Record> records_;
   std::vector<bool> live_;
 };

@@ -53,6 +53,7 @@ struct EngineOptions {
   SignalNoise noise;
   AttitudeFilter filter = AttitudeFilter::kMultiplicative;
   TrackerOptions<double> tracker;
+  bool driven = false;        ///< by gyros, of gyro()
   bool keep_records = false;  ///< for smooth()
 };
 
@@ -66,7 +67,8 @@ class Engine {
   virtual ~Engine() = default;
 
   virtual Solution add(const ArrayEpoch& epoch) = 0;
-  /// The unit's mean rate over the @p t [s] before @p utime. From the first on, the filter is driven by gyros.
+  /// The unit's mean rate over the @p t [s] before @p utime [us]. It waits until the epoch that it belongs to comes:
+  /// raw phases are later than gyros.
   virtual void gyro(std::int64_t utime, double t, const Vec3<double>& w_ib_b) = 0;
   /// The solutions of add(), smoothed in place. @throws Error (numerics)
   virtual void smooth(std::vector<Solution>& solutions) = 0;

@@ -112,6 +112,7 @@ EngineOptions engine_options(const Options& o) {
     const io::SensorSheet sheet = io::read_sensor_sheet(o.sheet);
     if (!sheet.has_noise) throw Error(ExitCode::kInput, o.sheet + ": states no noise");
     const TriadNoise& gyro = sheet.noise.gyro;
+    options.driven = true;
     options.tracker.noise.gyro = gyro.density;
     options.tracker.noise.walk = gyro.wander * std::sqrt(2.0 / gyro.wander_correlation_time);
     options.tracker.noise.time = gyro.wander_correlation_time;
@@ -162,7 +163,11 @@ class GyroSink final : public SampleSink {
 
 class Run {
  public:
-  explicit Run(const Options& o) : o_(o), options_(engine_options(o)), engine_(Engine::make(options_)) {
+  explicit Run(const Options& o)
+      : o_(o),
+        options_(engine_options(o)),
+        engine_(Engine::make(options_)),
+        keeps_(o.smooth || !o.output.empty() || !o.log.empty()) {
     std::vector<std::string> inputs = o.inputs;
     inputs.insert(inputs.end(), o.navigation.begin(), o.navigation.end());
     check_outputs({o.output, o.log, o.raw_log, o.summary}, inputs);
@@ -190,7 +195,13 @@ class Run {
   }
 
   bool take(const ArrayEpoch& epoch) {
-    solutions_.push_back(engine_->add(epoch));
+    const Solution solution = engine_->add(epoch);
+    if (!o_.smooth) tally_.add(solution);
+    // a day of epochs is not kept where nobody asked for them
+    if (solutions_.empty() || keeps_)
+      solutions_.push_back(solution);
+    else
+      solutions_.back() = solution;
     return !interrupted();
   }
 
@@ -225,7 +236,7 @@ class Run {
     figures_ = read_rinex(
         o_.inputs, signals_, orbits_, [&](const ArrayEpoch& epoch) { return take(epoch); },
         [&](double fraction) {
-          progress.show(figure(100.0 * fraction, 3) + " %, " + std::to_string(solutions_.size()) + " epochs");
+          progress.show(figure(100.0 * fraction, 3) + " %, " + std::to_string(tally_.epochs()) + " epochs");
         },
         raw ? std::function<void(const io::GnssRaw&)>(record) : std::function<void(const io::GnssRaw&)>());
     if (raw && !interrupted()) raw->commit();
@@ -303,7 +314,6 @@ class Run {
         said = solution.status;
         std::fprintf(stderr, "%s, %d satellites\n", status_name(said), solution.satellites);
       }
-      if (o_.output.empty() && o_.log.empty() && o_.summary.empty()) count_and_forget();
       return goes_on;
     });
     GyroSink gyros(*engine_);
@@ -318,11 +328,6 @@ class Run {
     live_ = true;
   }
 
-  /// A day of epochs is not kept where nobody asked for them.
-  void count_and_forget() {
-    constexpr std::size_t kKept = 3600;
-    if (solutions_.size() > 2 * kKept) solutions_.erase(solutions_.begin(), solutions_.end() - kKept);
-  }
 #else
   void live() { throw Error(ExitCode::kUsage, "this program was built without LCM: give it RINEX files or a log"); }
 #endif
@@ -342,17 +347,15 @@ class Run {
       warn(std::to_string(figures_.left_out.too_many) + " signals beyond the " + std::to_string(kMostSignals) +
            " of an epoch were left out");
     if (o_.smooth) engine_->smooth(solutions_);
-    nlohmann::ordered_json tree = attitude_summary(solutions_, options_);
-    long long fixed = 0;
-    long long free = 0;
-    for (const Solution& s : solutions_) {
-      fixed += s.status >= AttitudeStatus::kHeld ? 1 : 0;
-      free += s.length_free > 0.0 ? 1 : 0;
+    if (o_.smooth) {
+      for (const Solution& s : solutions_) tally_.add(s);
     }
-    if (free > 0 && 5 * free > static_cast<long long>(solutions_.size()))
+    const nlohmann::ordered_json tree = tally_.json(options_);
+    const long long free = tally_.but_for_the_length();
+    if (free > 0 && 5 * free > tally_.epochs())
       warn("the phases of " + std::to_string(free) + " epochs fit, but not the length of " +
            figure(options_.slaves[0].norm(), 6) + " m that was stated: without it they say " +
-           figure(tree["baseline_1"]["length_without_the_stated_m"].get<double>(), 6) + " m");
+           figure(tally_.free_length(), 6) + " m");
     nlohmann::ordered_json whole = {
         {"schema", "trunnion/gnss_attitude/1"}, {"tool", tool_name()}, {"inputs", o_.inputs}};
     if (!figures_.digests.empty()) whole["sha256"] = figures_.digests;
@@ -364,7 +367,7 @@ class Run {
     for (const auto& [key, value] : tree.items()) whole[key] = value;
     if (engine_->restarts() > 0) whole["filter_restarts"] = engine_->restarts();
     whole["warnings"] = warnings_;
-    const bool refused = fixed == 0 && !live_;
+    const bool refused = tally_.sure() == 0 && !live_;
     if (!refused) {
       if (!o_.output.empty()) write_attitude_csv(o_.output, solutions_);
       if (!o_.log.empty()) write_attitude_log(o_.log, o_.out_channel, solutions_);
@@ -375,26 +378,10 @@ class Run {
     else
       print_summary(whole);
     if (refused) {
-      std::fprintf(stderr, "gnss_attitude: no epoch could be fixed: %s\n", why_not().c_str());
+      std::fprintf(stderr, "gnss_attitude: no epoch could be fixed: %s\n", tally_.why_not().c_str());
       return ExitCode::kNumerics;
     }
     return ExitCode::kDone;
-  }
-
-  [[nodiscard]] std::string why_not() const {
-    std::map<Status, long long> reasons;
-    long long silent = 0;
-    for (const Solution& s : solutions_) {
-      ++reasons[s.reason];
-      silent += s.silent ? 1 : 0;
-    }
-    if (silent == static_cast<long long>(solutions_.size())) return "a receiver was never heard";
-    const long long few = reasons[Status::kNotObservable];
-    const long long misfit = reasons[Status::kInconsistent];
-    if (misfit > few)
-      return "no whole cycles fit the phases and the stated antennas; are their places, and --phase-sigma-m, right?";
-    return "fewer than four common satellites with an orbit, or too few to be sure of the whole cycles (--signals, "
-           "--mask-deg, --length-sigma-m)";
   }
 
   const Options& o_;
@@ -402,10 +389,12 @@ class Run {
   std::unique_ptr<Engine> engine_;
   io::OrbitBook orbits_;
   std::vector<io::SignalName> signals_;
+  AttitudeFigures tally_;
   std::vector<Solution> solutions_;
   ReceiverFigures figures_;
   std::vector<std::string> warnings_;
   bool live_ = false;
+  bool keeps_;
 };
 
 void add_options(CLI::App& app, Options& o) {

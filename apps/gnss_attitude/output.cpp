@@ -116,83 +116,91 @@ void write_attitude_log(const std::string& path, const std::string& channel, con
   log.commit();
 }
 
-nlohmann::ordered_json attitude_summary(const std::vector<Solution>& solutions, const EngineOptions& options) {
-  std::map<AttitudeStatus, long long> counts;
-  std::array<double, 2> length{};
-  std::array<double, 2> square{};
-  std::array<long long, 2> fixed{};
-  double misfit = 0.0;
-  double degrees = 0.0;
-  double free_length = 0.0;
-  long long free = 0;
-  long long silent = 0;
-  long long refused = 0;
-  long long excluded = 0;
-  Vec3<double> sine = Vec3<double>::Zero();
-  Vec3<double> cosine = Vec3<double>::Zero();
-  Vec3<double> sigma = Vec3<double>::Zero();
-  std::array<long long, 3> angles{};
-  for (const Solution& s : solutions) {
-    ++counts[s.status];
-    silent += s.silent ? 1 : 0;
-    refused += s.refused ? 1 : 0;
-    if (s.length_free > 0.0) {
-      free_length += s.length_free;
-      ++free;
-    }
-    for (std::size_t k = 0; k < 2; ++k) {
-      if (!s.has_baseline[k]) continue;
-      const double l = s.baseline.col(static_cast<int>(k)).norm();
-      length[k] += l;
-      square[k] += l * l;
-      ++fixed[k];
-    }
-    if (s.status < AttitudeStatus::kHeld) continue;
-    misfit += s.misfit;
-    degrees += s.degrees;
-    excluded += s.excluded;
-    const Vec3<double> euler = euler_angles(s.attitude.q_nb);
-    const Vec3<double> sure = euler_sigma(s.attitude);
-    for (int i = 0; i < 3; ++i) {
-      if (!std::isfinite(sure(i))) continue;
-      sine(i) += std::sin(euler(i));
-      cosine(i) += std::cos(euler(i));
-      sigma(i) += sure(i);
-      ++angles[static_cast<std::size_t>(i)];
-    }
+void AttitudeFigures::add(const Solution& s) {
+  ++epochs_;
+  ++counts_[s.status];
+  ++reasons_[s.reason];
+  silent_ += s.silent ? 1 : 0;
+  refused_ += s.refused ? 1 : 0;
+  if (s.length_free > 0.0) {
+    free_length_ += s.length_free;
+    ++free_;
   }
+  for (std::size_t k = 0; k < 2; ++k) {
+    if (!s.has_baseline[k]) continue;
+    const double l = s.baseline.col(static_cast<int>(k)).norm();
+    length_[k] += l;
+    square_[k] += l * l;
+    ++measured_[k];
+  }
+  if (s.status < AttitudeStatus::kHeld) return;
+  misfit_ += s.misfit;
+  degrees_ += s.degrees;
+  excluded_ += s.excluded;
+  const Vec3<double> euler = euler_angles(s.attitude.q_nb);
+  const Vec3<double> sure = euler_sigma(s.attitude);
+  for (int i = 0; i < 3; ++i) {
+    if (!std::isfinite(sure(i))) continue;
+    sine_(i) += std::sin(euler(i));
+    cosine_(i) += std::cos(euler(i));
+    sigma_(i) += sure(i);
+    ++angles_[static_cast<std::size_t>(i)];
+  }
+}
+
+long long AttitudeFigures::sure() const {
+  long long sum = 0;
+  for (const auto& [status, count] : counts_) sum += status >= AttitudeStatus::kHeld ? count : 0;
+  return sum;
+}
+
+nlohmann::ordered_json AttitudeFigures::json(const EngineOptions& options) const {
   nlohmann::ordered_json tree;
-  tree["epochs"] = solutions.size();
+  tree["epochs"] = epochs_;
   for (const AttitudeStatus status : {AttitudeStatus::kFixed, AttitudeStatus::kHeld, AttitudeStatus::kPredicted,
-                                      AttitudeStatus::kFloat, AttitudeStatus::kNone})
-    tree[status_name(status)] = counts[status];
-  if (silent > 0) tree["receiver_silent"] = silent;
-  if (refused > 0) tree["refused_by_filter"] = refused;
-  if (excluded > 0) tree["satellites_left_out"] = excluded;
-  if (degrees > 0.0) tree["reduced_chi_square"] = misfit / degrees;
+                                      AttitudeStatus::kFloat, AttitudeStatus::kNone}) {
+    const auto found = counts_.find(status);
+    tree[status_name(status)] = found == counts_.end() ? 0 : found->second;
+  }
+  if (silent_ > 0) tree["receiver_silent"] = silent_;
+  if (refused_ > 0) tree["refused_by_filter"] = refused_;
+  if (excluded_ > 0) tree["satellites_left_out"] = excluded_;
+  if (degrees_ > 0.0) tree["reduced_chi_square"] = misfit_ / degrees_;
   for (std::size_t k = 0; k < options.slaves.size(); ++k) {
     nlohmann::ordered_json baseline = {{"stated_length_m", options.slaves[k].norm()}};
-    if (fixed[k] > 0) {
-      const double n = static_cast<double>(fixed[k]);
-      baseline["measured_length_m"] = length[k] / n;
-      baseline["scatter_m"] = std::sqrt(std::max(0.0, square[k] / n - length[k] / n * length[k] / n));
+    if (measured_[k] > 0) {
+      const double n = static_cast<double>(measured_[k]);
+      baseline["measured_length_m"] = length_[k] / n;
+      baseline["scatter_m"] = std::sqrt(std::max(0.0, square_[k] / n - length_[k] / n * length_[k] / n));
     }
     tree["baseline_" + std::to_string(k + 1)] = baseline;
   }
-  if (free > 0) tree["baseline_1"]["length_without_the_stated_m"] = free_length / static_cast<double>(free);
+  if (free_ > 0) tree["baseline_1"]["length_without_the_stated_m"] = free_length();
   const char* const names[] = {"roll", "pitch", "heading"};
   for (const int i : {2, 1, 0}) {
-    const auto n = static_cast<double>(angles[static_cast<std::size_t>(i)]);
+    const auto n = static_cast<double>(angles_[static_cast<std::size_t>(i)]);
     if (n < 1.0) continue;
     // circular, as a heading near north must be
-    const double r = std::min(1.0, std::hypot(sine(i), cosine(i)) / n);
-    double mean = std::atan2(sine(i), cosine(i)) / kRadPerDeg;
+    const double r = std::min(1.0, std::hypot(sine_(i), cosine_(i)) / n);
+    double mean = std::atan2(sine_(i), cosine_(i)) / kRadPerDeg;
     if (i == 2 && mean < 0.0) mean += 360.0;
     tree[names[i]] = {{"mean_deg", mean},
                       {"scatter_deg", std::sqrt(-2.0 * std::log(std::max(r, 1e-300))) / kRadPerDeg},
-                      {"sigma_deg", sigma(i) / n / kRadPerDeg}};
+                      {"sigma_deg", sigma_(i) / n / kRadPerDeg}};
   }
   return tree;
+}
+
+std::string AttitudeFigures::why_not() const {
+  const auto count = [&](Status status) {
+    const auto found = reasons_.find(status);
+    return found == reasons_.end() ? 0 : found->second;
+  };
+  if (silent_ == epochs_) return "a receiver was never heard";
+  if (count(Status::kInconsistent) > count(Status::kNotObservable))
+    return "no whole cycles fit the phases and the stated antennas; are their places, and --phase-sigma-m, right?";
+  return "fewer than four common satellites with an orbit, or too few to be sure of the whole cycles (--signals, "
+         "--mask-deg, --length-sigma-m)";
 }
 
 }  // namespace trunnion::app

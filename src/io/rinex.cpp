@@ -495,7 +495,19 @@ bool read_orbit(const std::vector<std::string_view>& lines, bool version_2, Broa
 }  // namespace
 
 void OrbitBook::add(const BroadcastOrbit& orbit) {
-  orbits_[SatelliteName{orbit.system, orbit.number}.index()].push_back(orbit);
+  constexpr std::size_t kMost = 100;  // of a satellite: four days
+  std::vector<BroadcastOrbit>& all = orbits_[SatelliteName{orbit.system, orbit.number}.index()];
+  for (BroadcastOrbit& known : all) {
+    if (orbit.toe - known.toe == 0.0) {  // a bus repeats them
+      known = orbit;
+      return;
+    }
+  }
+  if (all.size() == kMost) {
+    all.erase(all.begin());
+    --count_;
+  }
+  all.push_back(orbit);
   ++count_;
 }
 
@@ -539,7 +551,7 @@ void OrbitBook::add(const std::string& path) {
   }
   if (line_number == 0) throw input_error(path, 0, "", "is empty");
   if (!ended) throw input_error(path, line_number, "END OF HEADER", "is missing");
-  const std::size_t before = count_;
+  bool any = false;
   std::vector<std::string_view> lines;
   bool pending = line(head);
   while (pending) {
@@ -581,6 +593,7 @@ void OrbitBook::add(const std::string& path) {
         orbit.toc = toc + behind;
         orbit.toe = toe + behind;
         add(orbit);
+        any = true;
       } else {
         lose(satellite->text(), "a message of its orbit that is cut or no number");
       }
@@ -593,7 +606,7 @@ void OrbitBook::add(const std::string& path) {
       pending = line(head);
     }
   }
-  if (count_ == before)
+  if (!any)
     throw first_fault.empty() ? input_error(path, 0, "", "holds no orbit of GPS, Galileo, QZSS or BeiDou")
                               : Error(ExitCode::kInput, first_fault);
 }

@@ -82,6 +82,7 @@ Result<AntennaPlace> antenna_place(const AntennaEpoch<N>& epoch, const Vec3<doub
   std::array<int, static_cast<std::size_t>(N)> from{};
   for (int i = 0; i < epoch.count; ++i) {
     const AntennaSignal& s = epoch.at[static_cast<std::size_t>(i)];
+    if (s.group < 0 || s.group >= kGroups) continue;
     from[static_cast<std::size_t>(set.count)] = i;
     set[set.count++].group = s.group;
   }

@@ -278,6 +278,9 @@ class AttitudeTracker {
     return out;
   }
 
+  /// What is predicted is worth nothing, gyros were silent: the next fix starts anew.
+  void lose() { live_ = false; }
+
   [[nodiscard]] bool live() const { return live_; }
   [[nodiscard]] const Filter& filter() const { return filter_; }
   [[nodiscard]] int restarts() const { return restarts_; }

@@ -99,11 +99,14 @@ class DoubleDifferences {
   explicit DoubleDifferences(const SingleDifferences<T, N>& set) {
     std::array<int, kGroups> reference{};
     reference.fill(-1);
+    const auto grouped = [&](int i) { return set[i].group >= 0 && set[i].group < kGroups; };
     for (int i = 0; i < set.count; ++i) {
+      if (!grouped(i)) continue;
       int& r = reference[static_cast<std::size_t>(set[i].group)];
       if (r < 0 || set[i].phase_sigma < set[r].phase_sigma) r = i;
     }
     for (int i = 0; i < set.count; ++i) {
+      if (!grouped(i)) continue;
       const int r = reference[static_cast<std::size_t>(set[i].group)];
       if (i == r) continue;
       satellite_[static_cast<std::size_t>(count_)] = i;

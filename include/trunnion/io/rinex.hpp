@@ -132,6 +132,7 @@ class OrbitBook {
   /// Adds a navigation file's; messages that cannot be read are counted. @throws Error (input) for a file that is
   /// missing, is no navigation file or holds no orbit
   void add(const std::string& path);
+  /// One more; one of the same satellite and toe is replaced.
   void add(const BroadcastOrbit& orbit);
 
   /// The healthy orbit whose toe is nearest to @p time, kOrbitLasts at most; nullptr where there is none.
