@@ -21,7 +21,8 @@ class EngineOf : public Engine {
  public:
   using Sets = std::array<SingleDifferences<double, kMostSignals>, static_cast<std::size_t>(M)>;
 
-  explicit EngineOf(const EngineOptions& options) : options_(options), figure_(figure(options)) {}
+  explicit EngineOf(const EngineOptions& options)
+      : options_(options), figure_(figure(options)), resolver_(figure_, options.tracker.fix) {}
 
   Solution add(const ArrayEpoch& epoch) final {
     Solution solution;
@@ -58,10 +59,8 @@ class EngineOf : public Engine {
         solution.has_baseline[static_cast<std::size_t>(k)] = true;
         solution.baseline.col(k) = alone.seen.value.template segment<3>(3 * k);
       }
-    } else if (M == 1 && alone.reason == Status::kInconsistent) {
-      const auto free = resolve_baseline(sets[0], KnownLength<double>(), options_.tracker.fix);
-      if (free.ok() && free.value().accepted) solution.length_free = free.value().seen.value.norm();
     }
+    for (std::size_t k = 0; k < static_cast<std::size_t>(M); ++k) solution.other_length[k] = alone.other_length[k];
     return solution;
   }
 
@@ -76,7 +75,7 @@ class EngineOf : public Engine {
     return RigidVectors<double, M>(b, options.figure_sigma);
   }
   virtual EpochAttitude<double, M> resolve(double, const Sets& sets, Solution& solution) {
-    const EpochAttitude<double, M> alone = resolve_epoch<M>(sets, figure_, options_.tracker.fix);
+    const EpochAttitude<double, M> alone = resolver_.resolve(sets);
     solution.status = alone.status;
     solution.attitude = alone.attitude;
     return alone;
@@ -84,6 +83,7 @@ class EngineOf : public Engine {
 
   EngineOptions options_;
   RigidVectors<double, M> figure_;
+  ArrayResolver<double, M, kMostSignals> resolver_;
   AntennaPlace place_;
   bool has_place_ = false;
   GpsTime last_;
@@ -132,7 +132,7 @@ class TrackedEngine final : public EngineOf<M> {
     solution.status = out.status;
     solution.attitude = out.attitude;
     solution.rate = out.slow;
-    solution.has_rate = !this->options_.driven && tracker_.live();
+    solution.has_rate = !this->options_.driven && tracker_.live() && !out.started;
     solution.started = out.started;
     solution.refused = out.refused;
     if (keeps_) {
@@ -243,7 +243,7 @@ std::unique_ptr<Engine> Engine::make(const EngineOptions& options) {
     throw Error(ExitCode::kUsage, "a master and one or two slaves make an array, not " +
                                       std::to_string(options.slaves.size()) + " slaves");
   for (const Vec3<double>& slave : options.slaves) {
-    if (!slave.allFinite() || !(slave.norm() > 0.01) || !(slave.norm() < 1000.0))
+    if (!slave.allFinite() || !(slave.norm() > 0.01) || !(slave.norm() <= 1000.0))
       throw Error(ExitCode::kUsage, "an antenna is 1 cm to 1 km from the master");
   }
   if (options.slaves.size() == 1) {

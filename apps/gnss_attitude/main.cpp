@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <charconv>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
@@ -105,6 +106,8 @@ EngineOptions engine_options(const Options& o) {
   options.keep_records = o.smooth;
   if (o.smooth && options.filter != AttitudeFilter::kMultiplicative)
     throw Error(ExitCode::kUsage, "--smooth is of --filter mekf");
+  if (o.coloured > 0.0 && options.filter != AttitudeFilter::kMultiplicative)
+    throw Error(ExitCode::kUsage, "--coloured is of --filter mekf");
   if (!o.imu_channel.empty()) {
     if (options.filter != AttitudeFilter::kMultiplicative)
       throw Error(ExitCode::kUsage, "--imu-channel is of --filter mekf");
@@ -216,6 +219,11 @@ class Run {
         if (o_.inputs[i] == o_.inputs[j]) throw Error(ExitCode::kUsage, o_.inputs[i] + ": is there twice");
       }
     }
+    if (!o_.url.empty() || !o_.imu_channel.empty())
+      throw Error(ExitCode::kUsage, "--lcm-url and --imu-channel are of a bus or a log");
+    for (const std::string& path : o_.inputs) {
+      if (is_lcm_log(path)) throw Error(ExitCode::kUsage, path + ": is an LCM log, which stands alone");
+    }
     if (o_.navigation.empty()) throw Error(ExitCode::kUsage, "where are the satellites? --nav FILE");
     signals_ = o_.signals.empty() ? common_signals(o_.inputs) : signals_of(o_.signals);
     std::optional<io::LcmLogWriter> raw;
@@ -290,6 +298,11 @@ class Run {
   void hear(const MessageReceivers& all) {
     figures_ = all.figures();
     if (all.damaged() > 0) warn(std::to_string(all.damaged()) + " messages could not be decoded");
+    if (all.without_signal() > 0) {
+      std::string wanted;
+      for (const io::SignalName& name : signals_) wanted += " " + name.text();
+      warn(std::to_string(all.without_signal()) + " messages hold none of the signals" + wanted + " (--signals)");
+    }
     for (const int stranger : all.strangers())
       warn("antenna " + std::to_string(stranger) + " sends, and was not described");
     for (std::size_t k = 0; k < figures_.with_slave.size(); ++k) {
@@ -304,7 +317,7 @@ class Run {
     bus::Connection connection(o_.url);
     std::string message;
     std::int64_t sequence = 0;
-    AttitudeStatus said = AttitudeStatus::kNone;
+    std::optional<AttitudeStatus> said;
     MessageReceivers all = receivers([&](const ArrayEpoch& epoch) {
       const bool goes_on = take(epoch);
       const Solution& solution = solutions_.back();
@@ -312,7 +325,8 @@ class Run {
       connection.publish(o_.out_channel, message);
       if (solution.status != said) {
         said = solution.status;
-        std::fprintf(stderr, "%s, %d satellites\n", status_name(said), solution.satellites);
+        std::fprintf(stderr, "%s, %d satellites%s\n", status_name(*said), solution.satellites,
+                     solution.silent ? ", a receiver is silent" : "");
       }
       return goes_on;
     });
@@ -323,7 +337,17 @@ class Run {
         connection.subscribe(channel, [&](const io::LcmEvent& event) { (void)handle(event, all, unit); });
     }
     std::fprintf(stderr, "%s: %s to %s\n", connection.url().c_str(), o_.channel.c_str(), o_.out_channel.c_str());
-    while (!interrupted()) connection.handle(100);
+    auto heard = std::chrono::steady_clock::now();
+    while (!interrupted()) {
+      const auto now = std::chrono::steady_clock::now();
+      if (connection.handle(100)) {
+        heard = now;
+      } else if (now - heard > std::chrono::seconds(10)) {
+        heard = now + std::chrono::hours(1);
+        std::fprintf(stderr, "nothing is heard on %s\n", o_.channel.c_str());
+      }
+    }
+    (void)all.finish();
     hear(all);
     live_ = true;
   }
@@ -351,14 +375,11 @@ class Run {
       for (const Solution& s : solutions_) tally_.add(s);
     }
     const nlohmann::ordered_json tree = tally_.json(options_);
-    const long long free = tally_.but_for_the_length();
-    if (free > 0 && 5 * free > tally_.epochs())
-      warn("the phases of " + std::to_string(free) + " epochs fit, but not the length of " +
-           figure(options_.slaves[0].norm(), 6) + " m that was stated: without it they say " +
-           figure(tally_.free_length(), 6) + " m");
+    for (std::size_t k = 0; k < options_.slaves.size(); ++k) compare_length(k);
     nlohmann::ordered_json whole = {
         {"schema", "trunnion/gnss_attitude/1"}, {"tool", tool_name()}, {"inputs", o_.inputs}};
     if (!figures_.digests.empty()) whole["sha256"] = figures_.digests;
+    if (!o_.navigation.empty()) whole["navigation"] = {{"files", o_.navigation}, {"sha256", orbits_.digest()}};
     std::vector<std::string> names;
     for (const io::SignalName& name : signals_) names.push_back(name.text());
     whole["signals"] = names;
@@ -384,6 +405,23 @@ class Run {
     return ExitCode::kDone;
   }
 
+  /// What the phases say of a slave's stated length.
+  void compare_length(std::size_t k) {
+    constexpr double kFar = 3.0;  // of its sigmas
+    const double stated = options_.slaves[k].norm();
+    const std::string name = "baseline " + std::to_string(k + 1) + ": ";
+    const long long free = tally_.but_for_the_length(k);
+    if (free > 0 && 5 * free > tally_.epochs())
+      warn(name + "the phases of " + std::to_string(free) + " epochs fit, but not the length of " + figure(stated, 6) +
+           " m that was stated: without it they say " + figure(tally_.free_length(k), 6) + " m");
+    else if (tally_.measured(k) > 0 && std::abs(tally_.length(k) - stated) > kFar * options_.figure_sigma)
+      warn(name + "measures " + figure(tally_.length(k), 6) + " m, stated were " + figure(stated, 6) + " m, which is " +
+           figure(std::abs(tally_.length(k) - stated) / options_.figure_sigma, 2) + " times --length-sigma-m");
+    else if (tally_.sure() > 0 && 10 * tally_.measured(k) < tally_.epochs())
+      warn(name + "was measured in " + std::to_string(tally_.measured(k)) + " of " + std::to_string(tally_.epochs()) +
+           " epochs");
+  }
+
   const Options& o_;
   EngineOptions options_;
   std::unique_ptr<Engine> engine_;
@@ -400,11 +438,12 @@ class Run {
 void add_options(CLI::App& app, Options& o) {
   app.add_option("inputs", o.inputs,
                  "RINEX observation files, the master's first; or an LCM log; none: the bus, until interrupted");
-  app.add_option("--nav", o.navigation, "RINEX navigation file; may be given again. Messages may bring orbits, too");
+  app.add_option("--nav", o.navigation, "RINEX navigation file; may be given again. Messages may bring orbits, too")
+      ->allow_extra_args(false);
   app.add_option("--baseline-length-m", o.length, "Two antennas: the slave ahead of the master, on the body's x axis")
       ->check(CLI::Range(0.01, 1000.0));
   app.add_option("--antenna", o.antennas, "x,y,z of a slave from the master, in the body [m]; once for each")
-      ->take_all();
+      ->allow_extra_args(false);
   app.add_option("--length-sigma-m", o.length_sigma, "1 sigma of the lengths, and of what the figure may be otherwise")
       ->capture_default_str()
       ->check(CLI::Range(0.0001, 10.0));

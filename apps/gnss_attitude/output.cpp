@@ -13,7 +13,9 @@
 namespace trunnion::app {
 namespace {
 
-constexpr double kLooseAngle = 1.0;  // rad: an angle less sure than that is none
+constexpr double kLooseAngle = 1.0;           // rad: an angle less sure than that is none
+constexpr double kLevel = 10.0 * kRadPerDeg;  // 1 sigma of what no antenna shows, about level
+constexpr double kMostlyFree = 0.5;           // of an angle, that the free one makes
 
 /// One more cell; empty where @p known is false or the value is not finite.
 void append_cell(std::string& row, bool known, double value, const char* format) {
@@ -49,11 +51,14 @@ Vec3<double> euler_sigma(const AttitudeEstimate<double>& attitude) {
   const double cp = std::cos(euler.y());
   Mat3<double> J;  // of roll, pitch, yaw with respect to the rotation vector in the body
   J << 1.0, sr * std::tan(euler.y()), cr * std::tan(euler.y()), 0.0, cr, -sr, 0.0, sr / cp, cr / cp;
-  const Mat3<double> Q = J * attitude.covariance * J.transpose();
-  Vec3<double> sigma = Q.diagonal().cwiseMax(0.0).cwiseSqrt();
+  const Mat3<double> across = Mat3<double>::Identity() - attitude.free_axis * attitude.free_axis.transpose();
+  const Mat3<double> Q = J * across * attitude.covariance * across * J.transpose();
   const Vec3<double> moved = J * attitude.free_axis;
+  Vec3<double> sigma;
   for (int i = 0; i < 3; ++i) {
-    if (std::abs(moved(i)) > 1e-3 || !(sigma(i) < kLooseAngle)) sigma(i) = std::nan("");
+    // of the covariance, the part along the free axis is the filter's, and means nothing
+    sigma(i) = std::sqrt(std::max(0.0, Q(i, i)) + kLevel * kLevel * moved(i) * moved(i));
+    if (std::abs(moved(i)) > kMostlyFree || !(sigma(i) < kLooseAngle)) sigma(i) = std::nan("");
   }
   return sigma;
 }
@@ -122,11 +127,11 @@ void AttitudeFigures::add(const Solution& s) {
   ++reasons_[s.reason];
   silent_ += s.silent ? 1 : 0;
   refused_ += s.refused ? 1 : 0;
-  if (s.length_free > 0.0) {
-    free_length_ += s.length_free;
-    ++free_;
-  }
   for (std::size_t k = 0; k < 2; ++k) {
+    if (s.other_length[k] > 0.0) {
+      free_length_[k] += s.other_length[k];
+      ++free_[k];
+    }
     if (!s.has_baseline[k]) continue;
     const double l = s.baseline.col(static_cast<int>(k)).norm();
     length_[k] += l;
@@ -170,12 +175,12 @@ nlohmann::ordered_json AttitudeFigures::json(const EngineOptions& options) const
     nlohmann::ordered_json baseline = {{"stated_length_m", options.slaves[k].norm()}};
     if (measured_[k] > 0) {
       const double n = static_cast<double>(measured_[k]);
-      baseline["measured_length_m"] = length_[k] / n;
+      baseline["measured_length_m"] = length(k);
       baseline["scatter_m"] = std::sqrt(std::max(0.0, square_[k] / n - length_[k] / n * length_[k] / n));
     }
+    if (free_[k] > 0) baseline["length_without_the_stated_m"] = free_length(k);
     tree["baseline_" + std::to_string(k + 1)] = baseline;
   }
-  if (free_ > 0) tree["baseline_1"]["length_without_the_stated_m"] = free_length();
   const char* const names[] = {"roll", "pitch", "heading"};
   for (const int i : {2, 1, 0}) {
     const auto n = static_cast<double>(angles_[static_cast<std::size_t>(i)]);
@@ -184,7 +189,8 @@ nlohmann::ordered_json AttitudeFigures::json(const EngineOptions& options) const
     const double r = std::min(1.0, std::hypot(sine_(i), cosine_(i)) / n);
     double mean = std::atan2(sine_(i), cosine_(i)) / kRadPerDeg;
     if (i == 2 && mean < 0.0) mean += 360.0;
-    tree[names[i]] = {{"mean_deg", mean},
+    tree[names[i]] = {{"epochs", angles_[static_cast<std::size_t>(i)]},
+                      {"mean_deg", mean},
                       {"scatter_deg", std::sqrt(-2.0 * std::log(std::max(r, 1e-300))) / kRadPerDeg},
                       {"sigma_deg", sigma_(i) / n / kRadPerDeg}};
   }
@@ -197,10 +203,14 @@ std::string AttitudeFigures::why_not() const {
     return found == reasons_.end() ? 0 : found->second;
   };
   if (silent_ == epochs_) return "a receiver was never heard";
-  if (count(Status::kInconsistent) > count(Status::kNotObservable))
+  const long long few = count(Status::kNotObservable);
+  const long long doubtful = count(Status::kAmbiguous);
+  if (count(Status::kInconsistent) > std::max(few, doubtful))
     return "no whole cycles fit the phases and the stated antennas; are their places, and --phase-sigma-m, right?";
-  return "fewer than four common satellites with an orbit, or too few to be sure of the whole cycles (--signals, "
-         "--mask-deg, --length-sigma-m)";
+  if (doubtful >= few)
+    return "several sets of whole cycles fit; more --signals, a third antenna, or a surer --length-sigma-m decide";
+  return "fewer than four common satellites with an orbit above the mask whose phases are surer than a sixteenth of a "
+         "wavelength (--signals, --mask-deg, --phase-sigma-m)";
 }
 
 }  // namespace trunnion::app

@@ -18,7 +18,8 @@ namespace trunnion::app {
 /// "fixed", "held", ...
 const char* status_name(AttitudeStatus status);
 
-/// 1 sigma of roll, pitch and yaw [rad]; not a number for an angle that the free axis moves.
+/// 1 sigma of roll, pitch and yaw [rad]; not a number for an angle that is mostly the one about the free axis. What
+/// that one, by convention the body's z as low as can be, moves of the others is in their sigma, with kLevel.
 Vec3<double> euler_sigma(const AttitudeEstimate<double>& attitude);
 
 /// CSV: header and rows. Angles that are not observable, and what an epoch has not, are empty.
@@ -37,9 +38,16 @@ class AttitudeFigures {
   /// Epochs, those that are fixed or held, and those that fit but for the stated length.
   [[nodiscard]] long long epochs() const { return epochs_; }
   [[nodiscard]] long long sure() const;
-  [[nodiscard]] long long but_for_the_length() const { return free_; }
+  [[nodiscard]] long long but_for_the_length(std::size_t slave) const { return free_[slave]; }
   /// Their mean length without it [m].
-  [[nodiscard]] double free_length() const { return free_length_ / static_cast<double>(free_); }
+  [[nodiscard]] double free_length(std::size_t slave) const {
+    return free_length_[slave] / static_cast<double>(free_[slave]);
+  }
+  /// Epochs in which a slave's baseline was measured, and its mean length [m].
+  [[nodiscard]] long long measured(std::size_t slave) const { return measured_[slave]; }
+  [[nodiscard]] double length(std::size_t slave) const {
+    return length_[slave] / static_cast<double>(measured_[slave]);
+  }
   /// Why epochs were not fixed, in words; for when none was.
   [[nodiscard]] std::string why_not() const;
 
@@ -49,8 +57,10 @@ class AttitudeFigures {
   std::array<double, 2> length_{};
   std::array<double, 2> square_{};
   std::array<long long, 2> measured_{};
-  double misfit_ = 0.0, degrees_ = 0.0, free_length_ = 0.0;
-  long long epochs_ = 0, free_ = 0, silent_ = 0, refused_ = 0, excluded_ = 0;
+  std::array<double, 2> free_length_{};
+  std::array<long long, 2> free_{};
+  double misfit_ = 0.0, degrees_ = 0.0;
+  long long epochs_ = 0, silent_ = 0, refused_ = 0, excluded_ = 0;
   Vec3<double> sine_ = Vec3<double>::Zero();
   Vec3<double> cosine_ = Vec3<double>::Zero();
   Vec3<double> sigma_ = Vec3<double>::Zero();

@@ -14,7 +14,9 @@
 namespace trunnion::app {
 namespace {
 
-constexpr double kMeets = 0.02;                 // s, within which receivers' epochs are one
+constexpr double kBackwards = 10.0;             // s, and more ahead is no time to believe
+constexpr std::size_t kMostWaiting = 16;        // epochs of an antenna
+constexpr double kMeets = 0.005;                // s, within which receivers' epochs are one
 constexpr std::int64_t kUnixToGps = 315964800;  // s, 1970 to 1980-01-06
 
 std::string time_text(const GpsTime& time) {
@@ -96,6 +98,7 @@ ReceiverFigures read_rinex(const std::vector<std::string>& paths, const std::vec
     progress(readers[0].fraction());
   }
   for (std::size_t i = 0; i < paths.size(); ++i) {
+    readers[i].check();
     const io::RinexLosses& losses = readers[i].losses();
     if (!first[i])
       throw io::input_error(
@@ -119,8 +122,7 @@ MessageReceivers::MessageReceivers(std::size_t antennas, std::vector<io::SignalN
       signals_(std::move(signals)),
       orbits_(std::move(orbits)),
       sink_(std::move(sink)),
-      waiting_(antennas),
-      has_(antennas, false) {
+      waiting_(antennas) {
   figures_.with_slave.assign(antennas - 1, 0);
 }
 
@@ -139,42 +141,67 @@ bool MessageReceivers::raw(const io::LcmEvent& event) {
   }
   const auto antenna = static_cast<std::size_t>(raw->antenna);
   if (antenna >= antennas_) {
-    strangers_.insert(raw->antenna);
+    if (strangers_.size() < kMostWaiting) strangers_.insert(raw->antenna);
     return true;
   }
-  const GpsTime& time = raw->epoch.time;
-  if (went_ && !(time - last_ > kMeets)) return true;  // too late
-  if (any_ && time - time_ < -kMeets) return true;
-  if (any_ && time - time_ > kMeets && !emit()) return false;
-  if (!any_) {
-    any_ = true;
-    time_ = time;
-    utime_ = raw->utime;
+  without_signal_ += raw->epoch.at.empty() ? 1 : 0;
+  std::deque<Waiting>& queue = waiting_[antenna];
+  if (antenna == 0 && went_ && !(raw->epoch.time - last_ > 0.0)) {
+    if (raw->epoch.time - last_ > -kBackwards) return true;  // twice the same
+    figures_.warnings.push_back("the master's time steps back by " +
+                                std::to_string(static_cast<long long>(last_ - raw->epoch.time)) +
+                                " s: begun anew there");
+    for (auto& of : waiting_) of.clear();
+    went_ = false;
   }
-  if (antenna == 0) utime_ = raw->utime;
-  waiting_[antenna] = raw->epoch;
-  has_[antenna] = true;
-  return std::find(has_.begin(), has_.end(), false) == has_.end() ? emit() : true;
+  queue.push_back({raw->utime, raw->epoch});
+  if (queue.size() > kMostWaiting) queue.pop_front();
+  return emit(false);
 }
 
-bool MessageReceivers::finish() { return any_ ? emit() : true; }
+bool MessageReceivers::finish() { return emit(true); }
 
-bool MessageReceivers::emit() {
-  ArrayEpoch epoch;
-  epoch.utime = utime_;
-  epoch.time = has_[0] ? waiting_[0].time : time_;
-  for (std::size_t i = 0; i < antennas_; ++i) {
-    epoch.heard.push_back(has_[i]);
-    epoch.antenna.push_back(has_[i] ? io::antenna_epoch(waiting_[i], signals_, orbits_, figures_.left_out)
-                                    : AntennaEpoch<kMostSignals>());
-    if (i > 0 && has_[0] && has_[i]) ++figures_.with_slave[i - 1];
+bool MessageReceivers::emit(bool all_of_them) {
+  while (!waiting_[0].empty()) {
+    const Waiting& master = waiting_[0].front();
+    const GpsTime& time = master.epoch.time;
+    ArrayEpoch epoch;
+    epoch.utime = master.utime;
+    epoch.time = time;
+    epoch.heard.assign(antennas_, false);
+    epoch.heard[0] = true;
+    epoch.antenna.assign(antennas_, {});
+    bool later = waiting_[0].size() > 1;
+    bool missing = false;
+    std::vector<const Waiting*> chosen(antennas_, nullptr);
+    for (std::size_t i = 1; i < antennas_; ++i) {
+      for (const Waiting& slave : waiting_[i]) {
+        const double after = slave.epoch.time - time;
+        if (std::abs(after) <= kMeets) chosen[i] = &slave;
+        // a clock that is far ahead is no later epoch
+        later = later || (after > kMeets && after < kBackwards);
+      }
+      missing = missing || chosen[i] == nullptr;
+    }
+    if (missing && !later && !all_of_them) return true;
+    epoch.antenna[0] = io::antenna_epoch(master.epoch, signals_, orbits_, figures_.left_out);
+    for (std::size_t i = 1; i < antennas_; ++i) {
+      if (chosen[i] == nullptr) continue;
+      epoch.heard[i] = true;
+      epoch.antenna[i] = io::antenna_epoch(chosen[i]->epoch, signals_, orbits_, figures_.left_out);
+      ++figures_.with_slave[i - 1];
+    }
+    ++figures_.epochs;
+    last_ = time;
+    went_ = true;
+    for (std::size_t i = 1; i < antennas_; ++i) {
+      std::deque<Waiting>& queue = waiting_[i];
+      while (!queue.empty() && queue.front().epoch.time - last_ <= kMeets) queue.pop_front();
+    }
+    waiting_[0].pop_front();
+    if (!sink_(epoch)) return false;
   }
-  has_.assign(antennas_, false);
-  figures_.epochs += epoch.heard[0] ? 1 : 0;
-  last_ = time_;
-  went_ = true;
-  any_ = false;
-  return sink_(epoch);
+  return true;
 }
 
 }  // namespace trunnion::app

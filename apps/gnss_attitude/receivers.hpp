@@ -5,6 +5,7 @@
 
 #pragma once
 
+#include <deque>
 #include <functional>
 #include <map>
 #include <set>
@@ -44,7 +45,8 @@ ReceiverFigures read_rinex(const std::vector<std::string>& paths, const std::vec
                            const io::OrbitBook& orbits, const ArraySink& sink, const Fraction& progress,
                            const std::function<void(const io::GnssRaw&)>& raw = {});
 
-/// Messages of several receivers to epochs: an epoch goes out when all have spoken, or when one speaks of a later one.
+/// Messages of several receivers to epochs, which the master's are: one goes out when all slaves have spoken of it, or
+/// when a receiver speaks of a later one.
 class MessageReceivers {
  public:
   /// @param antennas the master and its slaves
@@ -59,26 +61,30 @@ class MessageReceivers {
 
   [[nodiscard]] const ReceiverFigures& figures() const { return figures_; }
   [[nodiscard]] const io::OrbitBook& orbits() const { return orbits_; }
+  /// Messages that held none of the signals.
+  [[nodiscard]] long long without_signal() const { return without_signal_; }
   /// Messages that were none of ours, or damaged.
   [[nodiscard]] long long damaged() const { return damaged_; }
   [[nodiscard]] const std::set<int>& strangers() const { return strangers_; }
 
  private:
-  bool emit();
+  struct Waiting {
+    std::int64_t utime;
+    io::ObservationEpoch epoch;
+  };
+  /// What of the waiting epochs of the master is ripe. @return false when the sink wants no more
+  bool emit(bool all_of_them);
 
   std::size_t antennas_;
   std::vector<io::SignalName> signals_;
   io::OrbitBook orbits_;
   ArraySink sink_;
   ReceiverFigures figures_;
-  std::vector<io::ObservationEpoch> waiting_;
-  std::vector<bool> has_;
-  std::int64_t utime_ = 0;
-  GpsTime time_;  ///< of the epoch that waits
-  bool any_ = false;
-  GpsTime last_;  ///< of the last that went out
+  std::vector<std::deque<Waiting>> waiting_;  ///< of each antenna, in order of arrival
+  GpsTime last_;                              ///< of the epoch that went out last
   bool went_ = false;
   long long damaged_ = 0;
+  long long without_signal_ = 0;
   std::set<int> strangers_;
 };
 

@@ -106,7 +106,7 @@ GpsTime gps_time(int year, int month, int day, int hour, int minute, double seco
       day - 32075 + 1461 * (year + 4800 + a) / 4 + 367 * (month - 2 - a * 12) / 12 - 3 * ((year + 4900 + a) / 100) / 4;
   const int days = julian - 2444245;
   const int week = days >= 0 ? days / 7 : -1;
-  return {week, (days - 7 * week) * 86400.0 + hour * 3600.0 + minute * 60.0 + second};
+  return GpsTime{week, 0.0} + ((days - 7 * week) * 86400.0 + hour * 3600.0 + minute * 60.0 + second);
 }
 
 std::string SatelliteName::text() const {
@@ -237,7 +237,22 @@ std::vector<SignalName> ObservationReader::available() const {
   return names;
 }
 
+/// Of an event within the file: files that were joined have other types from there on.
+void ObservationReader::new_header_line(std::string_view text, bool first) {
+  const std::string_view label = trimmed(part(text, kLabel, 20));
+  if (first) renewed_ = false;
+  if (label == "# / TYPES OF OBSERV") {
+    if (!renewed_) types_.clear();
+    types_of_version_2(text);
+    renewed_ = true;
+  } else if (label == "SYS / # / OBS TYPES") {
+    if (part(text, 0, 1) != " " && !text.empty()) types_.erase(text[0]);
+    types_of_version_3(text);
+  }
+}
+
 void ObservationReader::choose(const std::vector<SignalName>& signals) {
+  signals_ = signals;
   columns_.clear();
   bool any = false;
   for (const char letter : kLetters) {
@@ -355,7 +370,10 @@ bool ObservationReader::read_3(std::string_view head, ObservationEpoch& epoch) {
       lose(false, "epoch", "ends before its satellites");
       break;
     }
-    if (flag > 1) continue;
+    if (flag > 1) {
+      new_header_line(text, i == 0);
+      continue;
+    }
     ++read_;
     const std::string_view name = part(text, 0, 3);
     if (!names_a_satellite(name)) {
@@ -375,6 +393,7 @@ bool ObservationReader::read_3(std::string_view head, ObservationEpoch& epoch) {
     else
       lose(false, satellite->text(), "has an observation that is cut or no number");
   }
+  if (flag > 1 && !signals_.empty()) choose(signals_);
   return flag <= 1;
 }
 
@@ -387,7 +406,8 @@ bool ObservationReader::read_2(std::string_view head, ObservationEpoch& epoch) {
   }
   std::string_view text = head;
   if (flag > 1) {
-    for (int i = 0; i < count && line(text); ++i) continue;
+    for (int i = 0; i < count && line(text); ++i) new_header_line(text, i == 0);
+    if (!signals_.empty()) choose(signals_);
     return false;
   }
   std::vector<std::optional<SatelliteName>> names;
@@ -439,6 +459,13 @@ bool ObservationReader::next_epoch_line(std::string_view& text) {
   return false;
 }
 
+void ObservationReader::check() const {
+  const long long lost = losses_.epochs + losses_.satellites;
+  if (static_cast<double>(lost) > kTolerable * static_cast<double>(std::max<long long>(read_, 1)))
+    throw Error(ExitCode::kInput, losses_.first + "; so are " + std::to_string(lost - 1) + " others of " +
+                                      std::to_string(read_) + " lines");
+}
+
 bool ObservationReader::next(ObservationEpoch& epoch) {
   std::string_view head;
   while (next_epoch_line(head)) {
@@ -453,10 +480,7 @@ bool ObservationReader::next(ObservationEpoch& epoch) {
     last_ = epoch.time;
     return true;
   }
-  const long long lost = losses_.epochs + losses_.satellites;
-  if (static_cast<double>(lost) > kTolerable * static_cast<double>(std::max<long long>(read_, 1)))
-    throw Error(ExitCode::kInput, losses_.first + "; so are " + std::to_string(lost - 1) + " others of " +
-                                      std::to_string(read_) + " lines");
+  check();
   return false;
 }
 
@@ -624,11 +648,12 @@ const BroadcastOrbit* OrbitBook::at(const SatelliteName& satellite, const GpsTim
   double nearest = kOrbitLasts;
   for (const BroadcastOrbit& orbit : found->second) {
     const double off = std::abs(orbit.toe - time);
-    if (!orbit.healthy || !(off <= nearest)) continue;
+    if (!(off <= nearest)) continue;
     nearest = off;
     best = &orbit;
   }
-  return best;
+  // an older message that calls it healthy is no excuse
+  return best != nullptr && best->healthy ? best : nullptr;
 }
 
 }  // namespace trunnion::io

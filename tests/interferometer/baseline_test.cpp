@@ -166,7 +166,7 @@ TEST(Baseline, HasTrueSigmas) {
     degrees += fix.value().degrees;
     ++count;
   }
-  EXPECT_GT(count, 950);
+  EXPECT_GT(count, 900) << "one in six is held against fits without a satellite";
   // one false alarm in a thousand each; those that were not accepted would have been a little worse
   const ChiSquareBand band = chi_square_band(3.0 * count, 1e-3);
   EXPECT_GT(nees, 0.99 * band.low);

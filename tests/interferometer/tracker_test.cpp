@@ -78,9 +78,8 @@ Tally fly(GnssArrayOptions options, const AttitudePath& path, int epochs, double
     tally.held += out.status == AttitudeStatus::kHeld;
     tally.predicted += out.status == AttitudeStatus::kPredicted;
     tally.other += out.status < AttitudeStatus::kPredicted;
-    // by its own covariance, and the nonlinearity of a degree
-    const Mat3<double> P = out.attitude.covariance.template cast<double>() + 1e-4 * Mat3<double>::Identity();
-    if (sure && out.attitude.observable == 3 && off.dot(P.inverse() * off) > 40.0) ++tally.wrong;
+    const Mat3<double> P = out.attitude.covariance.template cast<double>();
+    if (sure && out.attitude.observable == 3 && off.dot(P.inverse() * off) > 25.0) ++tally.wrong;  // five sigmas
     if (out.epoch.status == AttitudeStatus::kFixed && out.epoch.attitude.observable == 3) {
       const Vec3<double> alone =
           quaternion_log<double>(out.epoch.attitude.q_nb.template cast<double>().conjugate() * seen.q_nb);

@@ -112,6 +112,28 @@ class MultiplicativeEkf {
     record_.before = state;
   }
 
+  /// The same at an observation that starts a filter of coloured errors, which are in the start already: with
+  /// phi = -A (m + v), A = (H^T N H)^-1 H^T N, the start's covariance is 1 + k^2 times the white one, and that of phi
+  /// and m is -A k^2 N^-1.
+  MultiplicativeEkf(const AttitudeEstimate<T>& start, const T& free_sigma, const T& slow_sigma,
+                    const AttitudeNoise<T>& noise, const Observation& seen, const RigidVectors<T, M>& vectors)
+      : MultiplicativeEkf(start, free_sigma, slow_sigma, noise) {
+    if constexpr (Coloured) {
+      if (seen.rank < 3 * M) return;
+      State& state = record_.after;
+      const T k2 = noise.coloured * noise.coloured;
+      steady_ = k2 * seen.information.inverse();
+      state.P.template topLeftCorner<3, 3>() += k2 * start.covariance;
+      const Eigen::Matrix<T, 3 * M, 3> H = vectors.turned_by(state.q_nb.toRotationMatrix());
+      const Eigen::Matrix<T, 3, 3 * M> cross = -k2 * start.covariance * H.transpose();
+      state.P.template block<3, 3 * M>(0, 6) = cross;
+      state.P.template block<3 * M, 3>(6, 0) = cross.transpose();
+      state.P.template bottomRightCorner<3 * M, 3 * M>() = steady_;
+      record_.before = state;
+      started_ = true;
+    }
+  }
+
   [[nodiscard]] const State& state() const { return record_.after; }
   /// Of the last update(), or of the start.
   [[nodiscard]] const Record& record() const { return record_; }
@@ -182,20 +204,21 @@ class MultiplicativeEkf {
       after.move(x);
       record_ = {before, after, Phi_};
       Phi_.setIdentity();
-      started_ = true;
+      started_ = started_ || seen.rank == 3 * M;
       return Status::kOk;
     }
     return Status::kInconsistent;
   }
 
   /// About an axis of the body that nothing shows, angle and rate are kept from being less sure than that: without it
-  /// they wander off, and the iteration with them. The state stays; the covariance about @p axis means nothing.
+  /// they wander off, and the iteration with them. The state stays, and what is surer stays as sure.
   void tether(const Vec3<T>& axis, const T& angle_sigma, const T& slow_sigma) {
     typename State::Square& P = record_.after.P;
     for (const int block : {0, 3}) {
-      const T sigma = block == 0 ? angle_sigma : slow_sigma;
+      const T most = block == 0 ? angle_sigma * angle_sigma : slow_sigma * slow_sigma;
       const typename State::Vector Pa = P.template middleCols<3>(block) * axis;
-      P -= Pa * Pa.transpose() / (axis.dot(Pa.template segment<3>(block)) + sigma * sigma);
+      const T variance = axis.dot(Pa.template segment<3>(block));
+      if (variance > most) P -= (T(1) - most / variance) / variance * Pa * Pa.transpose();
     }
   }
 

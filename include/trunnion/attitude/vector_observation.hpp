@@ -105,9 +105,9 @@ struct AttitudeEstimate {
 
 namespace kernel {
 
-/// Covariance, observable axes and the free one from the information.
+/// Covariance, observable axes and the free one from the information of vectors that show @p rank axes.
 template <class T>
-void describe(AttitudeEstimate<T>& estimate) {
+void describe(int rank, AttitudeEstimate<T>& estimate) {
   const Eigen::SelfAdjointEigenSolver<Mat3<T>> parts(estimate.information);
   const T least = T(1e-6) * parts.eigenvalues()(2);
   estimate.observable = 0;
@@ -115,7 +115,7 @@ void describe(AttitudeEstimate<T>& estimate) {
   estimate.free_axis.setZero();
   for (int i = 0; i < 3; ++i) {
     const Vec3<T> axis = parts.eigenvectors().col(i);
-    if (parts.eigenvalues()(i) > least && parts.eigenvalues()(i) > T(0)) {
+    if (i >= 3 - rank && parts.eigenvalues()(i) > least && parts.eigenvalues()(i) > T(0)) {
       ++estimate.observable;
       estimate.covariance += axis * axis.transpose() / parts.eigenvalues()(i);
     } else {
@@ -149,7 +149,7 @@ Result<AttitudeEstimate<T>> most_likely_attitude(const Quaternion<T>& start, con
     const Eigen::Matrix<T, 3 * M, 1> Nr = N * r;
     estimate.information = congruence<T>(Eigen::Matrix<T, 3, 3 * M>(H.transpose()), N);
     estimate.cost = r.dot(Nr);
-    kernel::describe(estimate);
+    kernel::describe(vectors.rank(), estimate);
     if (estimate.observable < 2) return Status::kNotObservable;
     const Vec3<T> phi = estimate.covariance * (H.transpose() * Nr);
     const T length = phi.norm();

@@ -21,6 +21,7 @@ enum class Status : std::uint8_t {
   kOtherVersion,    ///< a block of another version of its format
   kOtherByteOrder,  ///< a block written for a machine of the other byte order
   kInconsistent,    ///< data that contradict each other, or what is known
+  kAmbiguous,       ///< several answers that the data cannot tell apart
 };
 
 /// A value, or the reason why there is none. @code if (auto r = f(); r.ok()) use(r.value()); @endcode

@@ -66,7 +66,7 @@ inline Mat3<double> north_from_earth(const Vec3<double>& r) {
 
 struct AntennaPlace {
   Vec3<double> r = Vec3<double>::Zero();  ///< Earth-fixed [m]
-  Vec3<double> v = Vec3<double>::Zero();  ///< of (4) [m/s]; zero where no Doppler was measured
+  Vec3<double> v = Vec3<double>::Zero();  ///< of (4) [m/s]; zero where fewer than four Dopplers were measured
   int used = 0;                           ///< satellites
 };
 
@@ -125,15 +125,18 @@ Result<AntennaPlace> antenna_place(const AntennaEpoch<N>& epoch, const Vec3<doub
     if (worst < 0) {
       if (std::abs(place.r.norm() - kEarthRadius) > 1e6) return Status::kInconsistent;
       place.used = set.count;
-      BaselineSum<double> speed;
-      bool all = true;
+      SingleDifferences<double, N> moving;
       for (int i = 0; i < set.count; ++i) {
-        set[i].code = of(i).range_rate - set[i].e.dot(of(i).velocity);
-        all = all && std::isfinite(set[i].code);
+        const double rate = of(i).range_rate - set[i].e.dot(of(i).velocity);
+        if (!std::isfinite(rate)) continue;
+        moving[moving.count] = set[i];
+        moving[moving.count++].code = rate;
       }
+      BaselineSum<double> speed;
       add_centred(
-          set, [&](int i) { return set[i].code; }, one, speed);
-      if (all) place.v = speed.information.ldlt().solve(speed.moment);
+          moving, [&](int i) { return moving[i].code; }, one, speed);
+      const Eigen::SelfAdjointEigenSolver<Mat3<double>> known(speed.information);
+      if (known.eigenvalues()(0) > 1e-6) place.v = speed.information.ldlt().solve(speed.moment);
       return place;
     }
     set = set.without(worst);
@@ -149,14 +152,16 @@ struct SignalNoise {
   double mask = 10.0 * kRadPerDeg;
 };
 
-/// Eq. (2), (3), of the signals that both antennas have, satellite and group being the same.
+/// Eq. (2), (3), of the signals that both antennas have, satellite and group being the same. Phases whose sigma (5) is
+/// past a sixteenth of their wavelength are left out: they tell no whole cycles, and would leave those of all in doubt.
 ///
 /// @param place of the master's antenna
-/// @return kTimeOut when the receivers' times are more than 20 ms apart
+/// @return kTimeOut when the receivers' times are more than 5 ms apart
 template <class T, int N>
 Result<SingleDifferences<T, N>> single_differences(const AntennaEpoch<N>& master, const AntennaEpoch<N>& slave,
                                                    const AntennaPlace& place, const SignalNoise& noise) {
-  constexpr double kFarthest = 0.02;  // s
+  constexpr double kFarthest = 0.005;        // s
+  constexpr double kMostNoise = 1.0 / 16.0;  // of a wavelength
   const double apart = slave.time - master.time;
   if (!(std::abs(apart) <= kFarthest)) return Status::kTimeOut;
   const Mat3<double> C_ne = north_from_earth(place.r);
@@ -196,6 +201,7 @@ Result<SingleDifferences<T, N>> single_differences(const AntennaEpoch<N>& master
     const double whole = std::round(phase - code / pair.m->wavelength);
     if (!std::isfinite(code) || !std::isfinite(phase)) continue;
     const double longer = std::sqrt(0.5 + 0.5 / (pair.e.z() * pair.e.z()));
+    if (!(noise.phase * longer <= kMostNoise * pair.m->wavelength)) continue;
     SingleDifference<T>& d = set[set.count++];
     d.e = pair.e.template cast<T>();
     d.wavelength = static_cast<T>(pair.m->wavelength);

@@ -233,8 +233,8 @@ Result<BaselineFix<T, N>> resolve_all(const SingleDifferences<T, N>& set, const 
 ///
 /// Where no whole numbers fit, or those that fit best do not fit well, there being seven satellites or more, each is
 /// left out in turn: one with half a cycle bends the whole numbers of the others until they fit, in a way. A fit
-/// without one that has other whole numbers is a rival, at kExclusion more. Where nothing fits but what leaves the
-/// length out, the length is wrong, and no satellite is blamed for it.
+/// without one costs kExclusion more, and the best of all must be ahead of every other answer. Where nothing fits but
+/// what leaves the length out, the length is wrong, and no satellite is blamed for it.
 /// @param prior of b, of a filter: a fix that leans on it is held, not found
 /// @return kNotObservable with fewer than three double differences or a sky that leaves a direction open; kInconsistent
 /// when nothing fits: a wrong length, half cycles, an antenna that is not where it should be; kTimeOut when the limit
@@ -255,30 +255,38 @@ Result<BaselineFix<T, N>> resolve_baseline(const SingleDifferences<T, N>& set, c
     const Result<BaselineFix<T, N>> free = kernel::resolve_all(set, KnownLength<T>(), options, prior);
     if (free.ok() && free.value().accepted) return whole;
   }
-  // to leave one out is to choose among as many fits: each must be a good one
+  // candidates: all satellites, and all but each; what they cost, and how far the best is from others than itself
+  T wavelength = set[0].wavelength;
+  for (int i = 1; i < set.count; ++i) wavelength = set[i].wavelength < wavelength ? set[i].wavelength : wavelength;
+  const auto other = [&](const BaselineFix<T, N>& a, const BaselineFix<T, N>& b) {
+    return (a.seen.value - b.seen.value).norm() > T(0.25) * wavelength;
+  };
   FixOptions<T> strict = options;
   strict.misfit = T(kOneInHundred);
-  Result<BaselineFix<T, N>> best = Status::kInconsistent;
+  Result<BaselineFix<T, N>> best = whole;
+  T cost = whole.ok() ? whole.value().misfit : std::numeric_limits<T>::infinity();
+  T rival = std::numeric_limits<T>::infinity();
   for (int i = 0; i < set.count; ++i) {
     const Result<BaselineFix<T, N>> rest = kernel::resolve_all(set.without(i), known, strict, prior);
-    if (!rest.ok() || !rest.value().accepted) continue;
-    if (best.ok() && best.value().misfit <= rest.value().misfit) continue;
+    if (!rest.ok()) continue;
+    const T price = rest.value().misfit + T(kExclusion);
+    if (best.ok() && !other(best.value(), rest.value()) && cost <= price) continue;  // the same answer
+    if (price >= cost) {
+      rival = price < rival ? price : rival;
+      continue;
+    }
+    if (best.ok() && other(best.value(), rest.value())) rival = cost < rival ? cost : rival;
     BaselineFix<T, N> fix = rest.value();
     for (int k = set.count - 1; k > i; --k)
       fix.cycles[static_cast<std::size_t>(k)] = fix.cycles[static_cast<std::size_t>(k - 1)];
     fix.cycles[static_cast<std::size_t>(i)] = T(0);
     fix.excluded = i;
     best = fix;
+    cost = price;
   }
-  if (misfits || !best.ok()) return misfits ? best : whole;
-  // other whole numbers, or the same?
-  T wavelength = set[0].wavelength;
-  for (int i = 1; i < set.count; ++i) wavelength = set[i].wavelength < wavelength ? set[i].wavelength : wavelength;
-  if ((best.value().seen.value - whole.value().seen.value).norm() < T(0.25) * wavelength) return whole;
-  const T ahead = best.value().misfit + T(kExclusion) - whole.value().misfit;
-  if (ahead < T(0)) return best;
-  BaselineFix<T, N> fix = whole.value();
-  fix.gap = ahead < fix.gap ? ahead : fix.gap;
+  if (!best.ok()) return best;
+  BaselineFix<T, N> fix = best.value();
+  fix.gap = rival - cost < fix.gap ? rival - cost : fix.gap;
   fix.accepted = fix.accepted && fix.gap > options.gap;
   return fix;
 }

@@ -34,7 +34,13 @@ struct GpsTime {
   friend double operator-(const GpsTime& a, const GpsTime& b) {
     return (a.week - b.week) * kSecondsPerWeek + (a.seconds - b.seconds);
   }
-  friend GpsTime operator+(const GpsTime& a, double s) { return {a.week, a.seconds + s}; }
+  /// Seconds stay within the week.
+  friend GpsTime operator+(const GpsTime& a, double s) {
+    const double whole = a.seconds + s;
+    const double weeks = std::floor(whole / kSecondsPerWeek);
+    if (!(std::abs(weeks) < 1e6)) return {a.week, whole};
+    return {a.week + static_cast<int>(weeks), whole - weeks * kSecondsPerWeek};
+  }
 };
 
 enum class SatelliteSystem : std::uint8_t { kGps, kGalileo, kQzss, kBeidou };

@@ -284,6 +284,7 @@ Result<IntegerFix<T, N>> lambda(const BoundedVector<T, N>& a_float, const Bounde
       of, z_float, std::numeric_limits<T>::max(), std::numeric_limits<T>::max(), limits,
       [](const BoundedVector<T, N>&) { return T(0); }, found);
   if (!found.complete) return Status::kTimeOut;
+  if (found.count < 2) return Status::kOutOfRange;  // variances so small that nothing is finite
   IntegerFix<T, N> fix;
   fix.best = whole + of.back() * found.at[0].z;
   fix.second = whole + of.back() * found.at[1].z;

@@ -80,8 +80,11 @@ class ObservationReader {
   [[nodiscard]] std::vector<SignalName> available() const;
 
   /// The next epoch that can be read. @return false at the end
-  /// @throws Error (input) when more than one line in ten could not be read
+  /// @throws Error (input) at the end when more than one line in ten could not be read
   bool next(ObservationEpoch& epoch);
+
+  /// The same for a file that is not read to its end.
+  void check() const;
 
   [[nodiscard]] const RinexLosses& losses() const { return losses_; }
   /// Of the header, Earth-fixed [m]; zero where it is not stated.
@@ -103,6 +106,7 @@ class ObservationReader {
   bool read_2(std::string_view head, ObservationEpoch& epoch);
   bool read_3(std::string_view head, ObservationEpoch& epoch);
   bool time_of(std::string_view head, bool version_2, ObservationEpoch& epoch, int& flag, int& count);
+  void new_header_line(std::string_view text, bool first);
   bool next_epoch_line(std::string_view& text);
   bool take(std::string_view field, const Column& column, std::vector<SignalObservation>& found);
   void keep(const SatelliteName& satellite, std::vector<SignalObservation>& found, ObservationEpoch& epoch);
@@ -118,6 +122,7 @@ class ObservationReader {
   std::vector<SignalName> signals_;
   std::map<char, std::vector<std::string>> types_;
   std::map<char, std::vector<Column>> columns_;
+  bool renewed_ = false;
   char listed_ = ' ';  // the system whose types go on in the next line
   bool seconds_of_beidou_ = false;
   bool started_ = false;
