@@ -146,13 +146,16 @@ bool MessageReceivers::raw(const io::LcmEvent& event) {
   }
   without_signal_ += raw->epoch.at.empty() ? 1 : 0;
   std::deque<Waiting>& queue = waiting_[antenna];
-  if (antenna == 0 && went_ && !(raw->epoch.time - last_ > 0.0)) {
-    if (raw->epoch.time - last_ > -kBackwards) return true;  // twice the same
-    figures_.warnings.push_back("the master's time steps back by " +
-                                std::to_string(static_cast<long long>(last_ - raw->epoch.time)) +
-                                " s: begun anew there");
-    for (auto& of : waiting_) of.clear();
-    went_ = false;
+  if (antenna == 0 && (went_ || !queue.empty())) {
+    const double step = raw->epoch.time - (queue.empty() ? last_ : queue.back().epoch.time);
+    if (step < -kBackwards) {
+      figures_.warnings.push_back("the master's time steps back by " + std::to_string(static_cast<long long>(-step)) +
+                                  " s: begun anew there");
+      for (auto& of : waiting_) of.clear();
+      went_ = false;
+    } else if (!(step > 0.0)) {
+      return true;  // twice the same
+    }
   }
   queue.push_back({raw->utime, raw->epoch});
   if (queue.size() > kMostWaiting) queue.pop_front();

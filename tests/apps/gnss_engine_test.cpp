@@ -136,6 +136,50 @@ TEST(Engine, SaysWhichReceiverIsSilentAndGoesOnWithTheOther) {
   EXPECT_LT(after, 0.7 * before);
 }
 
+/// A fix that the filter refuses is a record of nothing seen: the smoother is not led astray by the one before.
+TEST(Engine, SmoothsAcrossARefusedFix) {
+  const Quaternion<double> truth = quaternion_of_euler(0.1, -0.2, 2.0);
+  GnssArray array(on_a_roof(5), AttitudePath([](double) { return Vec3<double>(Vec3<double>::Zero()); }, truth, 60.0));
+  GnssArray elsewhere(on_a_roof(6), AttitudePath([](double) { return Vec3<double>(Vec3<double>::Zero()); },
+                                                 quaternion_of_euler(0.1, -0.2, 1.0), 60.0));
+  EngineOptions options = engine_options();
+  options.tracker.noise.walk = 0.01 * kRadPerDeg;
+  options.keep_records = true;
+  const auto engine = Engine::make(options);
+  std::vector<Solution> solutions;
+  for (int k = 0; k < 40; ++k) {
+    const auto& here = array.next();
+    const auto& there = elsewhere.next();
+    solutions.push_back(engine->add(epoch_of(k == 20 ? there : here)));
+    EXPECT_EQ(solutions.back().refused, k == 20);
+  }
+  engine->smooth(solutions);
+  double nees = 0.0;
+  for (std::size_t k = 1; k < solutions.size(); ++k) {
+    const Vec3<double> off = rotation_error(solutions[k].attitude.q_nb, truth);
+    nees += off.dot(solutions[k].attitude.information * off) / 39.0;
+    EXPECT_LT(degrees_off(solutions[k], truth), 0.6) << k;
+  }
+  EXPECT_LT(nees / 3.0, 4.0) << "errors of a smoother are one error";
+}
+
+TEST(Engine, SmoothsColouredErrorsThatBeginWithAHole) {
+  GnssArray array(on_a_roof(7), simulation::example_1_stand_in(simulation::PlatformMotion::kSlow, 60.0));
+  EngineOptions options = engine_options();
+  options.tracker.noise = {0.1 * kRadPerDeg, std::numeric_limits<double>::infinity(), 0.0, 1.0, 30.0};
+  options.keep_records = true;
+  const auto engine = Engine::make(options);
+  std::vector<Solution> solutions;
+  for (int k = 0; k < 40; ++k) {
+    ArrayEpoch epoch = epoch_of(array.next());
+    if (k == 1) epoch.heard[2] = false;
+    if (k == 2) epoch.heard[0] = false;
+    solutions.push_back(engine->add(epoch));
+  }
+  ASSERT_NO_THROW(engine->smooth(solutions));
+  for (const Solution& s : solutions) EXPECT_TRUE(s.attitude.covariance.allFinite());
+}
+
 TEST(Engine, OfThePaperFollowsToo) {
   const AttitudePath path = simulation::example_1_stand_in(simulation::PlatformMotion::kSlow, 60.0);
   GnssArray array(on_a_roof(4), path);

@@ -390,6 +390,7 @@ TEST(MultiplicativeEkf, KnowsColouredNoiseWhenTold) {
   constexpr double kTime = 30.0;
   double nees[2] = {};
   double square[2] = {};
+  double early = 0.0;
   long count = 0;
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
     Gaussian random(seed, 9);
@@ -410,10 +411,8 @@ TEST(MultiplicativeEkf, KnowsColouredNoiseWhenTold) {
     m = colour();
     seen.value += m;
     const auto start = attitude_from_vectors(seen, array.figure()).value();
-    AttitudeEstimate<double> unsure = start;
-    unsure.covariance *= 2.0;
     MultiplicativeEkf<double, 2> plain(start, 0.0, 1e-3, white);
-    MultiplicativeEkf<double, 2, true> aware(unsure, 0.0, 1e-3, told);
+    MultiplicativeEkf<double, 2, true> aware(start, 0.0, 1e-3, told, seen, array.figure());
     for (int k = 1; k < kEpochs; ++k) {
       const double kept = std::exp(-1.0 / kTime);
       m = kept * m + std::sqrt(1.0 - kept * kept) * colour();
@@ -423,6 +422,11 @@ TEST(MultiplicativeEkf, KnowsColouredNoiseWhenTold) {
       (void)aware.predict(1.0);
       ASSERT_EQ(plain.update(seen, array.figure()), Status::kOk);
       ASSERT_EQ(aware.update(seen, array.figure()), Status::kOk);
+      if (k == 3) {  // the start knows of them already
+        const Vec3<double> off = rotation_error(aware.state().q_nb, truth);
+        const Mat3<double> P = aware.state().P.topLeftCorner<3, 3>();
+        early += off.dot(P.ldlt().solve(off));
+      }
       if (k < 100 || k % 10 != 0) continue;
       const auto score = [&](const auto& state, int i) {
         const Vec3<double> off = rotation_error(state.q_nb, truth);
@@ -445,6 +449,9 @@ TEST(MultiplicativeEkf, KnowsColouredNoiseWhenTold) {
   const ChiSquareBand band = chi_square_band(3.0 * 120, 1e-3);
   EXPECT_GT(nees[1] / (3.0 * n), band.low / 360.0);
   EXPECT_LT(nees[1] / (3.0 * n), band.high / 360.0);
+  const ChiSquareBand first = chi_square_band(3.0 * 40, 1e-3);
+  EXPECT_GT(early, first.low);
+  EXPECT_LT(early, first.high);
   EXPECT_LE(square[1], 1.02 * square[0]);
 }
 

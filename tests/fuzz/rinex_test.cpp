@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the trunnion authors
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Ten thousand mutated RINEX files, and as many messages, through the whole chain to the attitude: each is read or
-/// refused, and what comes out is finite.
+/// Ten thousand mutated RINEX files to their satellites' places, and mutated messages on to the attitude: each is read
+/// or refused, and what comes out is finite.
 
 #include <gtest/gtest.h>
 
@@ -15,6 +15,7 @@
 #include "trunnion/core/error.hpp"
 #include "trunnion/io/antenna_epoch.hpp"
 #include "trunnion/io/gnss_messages.hpp"
+#include "trunnion/simulation/gnss_array.hpp"
 
 namespace trunnion::io {
 namespace {
@@ -83,42 +84,70 @@ TEST(Mutations, OfRinex) {
   EXPECT_LT(refused, kMutations);
 }
 
+/// Two receivers of a simulated array; the slave's messages, and the orbits', mutated.
 TEST(Mutations, OfGnssMessages) {
-  const TemporaryFolder folder;
-  ObservationReader reader(folder.file("a.obs", observations_3()));
-  reader.choose(signals());
+  simulation::GnssArrayOptions options;
+  options.start = {2320, 116400.0};
+  options.orbits = simulation::walker_constellation(30, options.start);
+  options.antennas = {Vec3<double>::Zero(), Vec3<double>(1, 0, 0)};
+  options.place = [](double) { return Vec3<double>(-3817680.98, 3562840.07, 3650158.45); };
+  simulation::GnssArray array(options, simulation::example_2_stand_in());
+  const std::vector<SignalName> gps = {SignalName::parse("G1C")};
   OrbitBook good;
-  good.add(folder.file("a.nav", orbits_3()));
-  GnssRaw raw;
-  ASSERT_TRUE(reader.next(raw.epoch));
-  std::string seeds[3];
-  encode_gnss_raw(raw, signals(), seeds[0]);
-  encode_gnss_orbit(1, 2, *good.at({SatelliteSystem::kGps, 5}, raw.epoch.time), seeds[1]);
+  for (const BroadcastOrbit& orbit : options.orbits) good.add(orbit);
+  const auto message_of = [&](const AntennaEpoch<kMostSignals>& antenna) {
+    GnssRaw raw;
+    raw.epoch.time = antenna.time;
+    for (int i = 0; i < antenna.count; ++i) {
+      const AntennaSignal& s = antenna.at[static_cast<std::size_t>(i)];
+      raw.epoch.at.push_back(
+          {{SatelliteSystem::kGps, s.satellite}, 0, s.code, s.phase, -s.range_rate / s.wavelength, false});
+    }
+    std::string message;
+    encode_gnss_raw(raw, gps, message);
+    return message;
+  };
+  const auto& seen = array.next();
+  LeftOut left_out;
+  const auto master = antenna_epoch(decode_gnss_raw(message_of(seen.antenna[0]), gps)->epoch, gps, good, left_out);
+  const auto place = antenna_place(master);
+  ASSERT_TRUE(place.ok());
+  std::string seeds[3] = {message_of(seen.antenna[1]), {}, {}};
+  encode_gnss_orbit(1, 2, options.orbits[0], seeds[1]);
   encode_attitude({}, seeds[2]);
   std::mt19937_64 rng(20261127);
   int decoded = 0;
+  int fixed = 0;
   for (int i = 0; i < 3 * kMutations; ++i) {
     const std::string message = mutate(seeds[i % 3], rng);
     if (i % 3 == 0) {
-      const auto read = decode_gnss_raw(message, signals());
-      if (read) attitude_from(read->epoch, good);
+      const auto read = decode_gnss_raw(message, gps);
       decoded += read.has_value();
+      if (!read) continue;
+      const auto slave = antenna_epoch(read->epoch, gps, good, left_out);
+      (void)antenna_place(slave);
+      const auto set = single_differences<double>(master, slave, place.value(), {});
+      if (!set.ok()) continue;
+      const auto epoch =
+          resolve_epoch<1, double, kMostSignals>({set.value()}, RigidVectors<double, 1>(Vec3<double>(1, 0, 0), 0.005));
+      fixed += epoch.status == AttitudeStatus::kFixed;
+      ASSERT_TRUE(epoch.attitude.q_nb.coeffs().allFinite() && epoch.attitude.covariance.allFinite());
     } else if (i % 3 == 1) {
       const auto orbit = decode_gnss_orbit(message);
-      if (orbit) {
-        const auto place = satellite_at(*orbit, orbit->toe);
-        if (place.ok()) {
-          ASSERT_TRUE(place.value().r.allFinite());
-        }
-      }
       decoded += orbit.has_value();
+      if (!orbit) continue;
+      const auto at_toe = satellite_at(*orbit, orbit->toe);
+      if (at_toe.ok()) {
+        ASSERT_TRUE(at_toe.value().r.allFinite());
+      }
     } else {
       decoded += decode_attitude(message).has_value();
     }
   }
-  std::printf("[ FIGURE   ] GNSS messages: %d mutations, %d decoded\n", 3 * kMutations, decoded);
+  std::printf("[ FIGURE   ] GNSS messages: %d mutations, %d decoded, %d fixed\n", 3 * kMutations, decoded, fixed);
   EXPECT_GT(decoded, 100);
   EXPECT_LT(decoded, 3 * kMutations);
+  EXPECT_GT(fixed, 50) << "some go all the way";
 }
 
 }  // namespace

@@ -172,6 +172,38 @@ TEST(OrbitBook, ReadsBothVersionsAndChoosesTheNearest) {
   EXPECT_EQ(satellite_at(*same, at).value().r, satellite_at(*g05, at).value().r);
 }
 
+TEST(OrbitBook, BelievesTheNewestMessageThatASatelliteIsUnhealthyAndKeepsOneOfEach) {
+  OrbitBook book;
+  BroadcastOrbit orbit;
+  orbit.number = 3;
+  orbit.toe = {2320, 7200.0};
+  book.add(orbit);
+  for (int i = 0; i < 1000; ++i) book.add(orbit);
+  EXPECT_EQ(book.size(), 1U) << "a bus repeats them";
+  orbit.toe = {2320, 14400.0};
+  orbit.healthy = false;
+  book.add(orbit);
+  EXPECT_NE(book.at({SatelliteSystem::kGps, 3}, {2320, 7300.0}), nullptr);
+  EXPECT_EQ(book.at({SatelliteSystem::kGps, 3}, {2320, 14300.0}), nullptr);
+}
+
+/// Files that were joined: other types from an event on.
+TEST(ObservationReader, FollowsNewTypesWithinTheFile) {
+  const TemporaryFolder folder;
+  std::string text = observations_2();
+  const std::size_t second = text.find("  1.0000000  0 13") - 16;
+  text.insert(text.rfind('\n', second + 16) + 1,
+              "                            4  1\n"
+              "     6    C1    D1    L1    S1    P2    L2                  # / TYPES OF OBSERV \n");
+  ObservationReader reader(folder.file("joined.obs", text));
+  reader.choose(names({"G1C"}));
+  const auto epochs = read(reader);
+  ASSERT_EQ(epochs.size(), 2U);
+  EXPECT_EQ(epochs[0].at[0].phase, 105000001.25);
+  EXPECT_EQ(epochs[1].at[0].phase, -1.5) << "what stands in the third column now";
+  EXPECT_EQ(epochs[1].at[0].doppler, 105000001.25);
+}
+
 TEST(OrbitBook, CountsWhatItCannotRead) {
   const TemporaryFolder folder;
   OrbitBook book;
