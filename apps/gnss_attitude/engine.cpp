@@ -75,7 +75,7 @@ class EngineOf : public Engine {
     return RigidVectors<double, M>(b, options.figure_sigma);
   }
   virtual EpochAttitude<double, M> resolve(double, const Sets& sets, Solution& solution) {
-    const EpochAttitude<double, M> alone = resolver_.resolve(sets);
+    EpochAttitude<double, M> alone = resolver_.resolve(sets);
     solution.status = alone.status;
     solution.attitude = alone.attitude;
     return alone;
@@ -217,7 +217,7 @@ class PaperEngine final : public EngineOf<2> {
     solution.attitude.q_nb = q;
     Eigen::Matrix<double, 4, 3> Xi;
     Xi << -q.x(), -q.y(), -q.z(), q.w(), -q.z(), q.y(), q.z(), q.w(), -q.x(), -q.y(), q.x(), q.w();
-    solution.attitude.covariance = 4.0 * Xi.transpose() * filter_->P().topLeftCorner<4, 4>() * Xi;
+    solution.attitude.covariance = 4.0 * Xi.transpose() * filter_->covariance().topLeftCorner<4, 4>() * Xi;
     solution.attitude.information = solution.attitude.covariance.inverse();
     solution.attitude.observable = 3;
     solution.rate = filter_->rate();

@@ -190,7 +190,7 @@ std::optional<AttitudeMessage> decode_attitude(std::string_view message) {
   const std::int8_t status = reader.i8();
   if (status < 0 || status > static_cast<std::int8_t>(AttitudeStatus::kFixed)) return std::nullopt;
   attitude.status = static_cast<AttitudeStatus>(status);
-  attitude.attitude.observable = reader.i8();
+  attitude.attitude.observable = static_cast<std::uint8_t>(reader.i8());
   const auto high = static_cast<std::uint8_t>(reader.i8());
   attitude.satellites = high * 256 + static_cast<std::uint8_t>(reader.i8());
   Quaternion<double>& q = attitude.attitude.q_nb;

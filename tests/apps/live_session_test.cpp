@@ -344,7 +344,7 @@ TEST_F(LiveSession, SaysThatAChannelNeverCame) {
   LiveRun live(bench_);
   live.press();
   std::vector<BusMessage> imu_only;
-  for (const BusMessage& m : part(0, 0.0, 3.0)) {
+  for (const BusMessage& m : part(0, 0.0, 3.2)) {
     if (m.channel == "IMU") imu_only.push_back(m);
   }
   for (int i = 0; i < 12; ++i) {

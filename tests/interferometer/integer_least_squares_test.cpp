@@ -114,12 +114,12 @@ TEST(Decorrelation, KeepsTheWholeNumbersWholeAndTheDeterminant) {
     ASSERT_EQ(of.status(), Status::kOk);
     const Eigen::MatrixXd product = of.back().transpose() * of.forth().transpose();
     EXPECT_TRUE(product.isIdentity(0.0)) << "whole numbers, exactly";
-    const Eigen::MatrixXd D = of.D().asDiagonal();
+    const Eigen::MatrixXd D = of.variances().asDiagonal();
     const Eigen::MatrixXd Qz = of.forth() * problem.Q * of.forth().transpose();
-    const Eigen::MatrixXd LDL = of.L().transpose() * D * of.L();
+    const Eigen::MatrixXd LDL = of.lower().transpose() * D * of.lower();
     EXPECT_LT((Qz - LDL).norm(), 1e-9 * problem.Q.norm());
     for (int i = 0; i < n; ++i) {
-      for (int j = 0; j < i; ++j) EXPECT_LE(std::abs(of.L()(i, j)), 0.5 + 1e-9);
+      for (int j = 0; j < i; ++j) EXPECT_LE(std::abs(of.lower()(i, j)), 0.5 + 1e-9);
     }
   }
 }

@@ -39,7 +39,7 @@ class QuaternionEkf {
 
   [[nodiscard]] Quaternion<T> q_nb() const { return Quaternion<T>(x_(0), x_(1), x_(2), x_(3)); }
   [[nodiscard]] Vec3<T> rate() const { return x_.template tail<3>(); }
-  [[nodiscard]] const Square& P() const { return P_; }
+  [[nodiscard]] const Square& covariance() const { return P_; }
 
   /// Eq. (2), (3). @return kOutOfRange, and nothing changed, for a time that is not finite or negative
   Status predict(const T& t) {

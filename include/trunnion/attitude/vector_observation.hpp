@@ -77,12 +77,12 @@ class RigidVectors {
   /// Eq. (4), turned back to n: the information about C b_k that is left when the d_k are not known.
   [[nodiscard]] Square loosened(const Square& N, const Mat3<T>& C_nb) const {
     if (!(sigma_ > T(0))) return N;
-    Square I_x_C = Square::Zero();
-    for (int k = 0; k < M; ++k) I_x_C.template block<3, 3>(3 * k, 3 * k) = C_nb;
-    const Square P = congruence(I_x_C, P_);
-    const Square NP = product(N, P);
-    const Square inner = Square::Identity() / (sigma_ * sigma_) + product(P, NP);
-    return N - product(NP, Square(inner.partialPivLu().solve(NP.transpose())));
+    Square turn = Square::Zero();
+    for (int k = 0; k < M; ++k) turn.template block<3, 3>(3 * k, 3 * k) = C_nb;
+    const Square P = congruence(turn, P_);
+    const Square across = product(N, P);
+    const Square inner = Square::Identity() / (sigma_ * sigma_) + product(P, across);
+    return N - product(across, Square(inner.partialPivLu().solve(across.transpose())));
   }
 
  private:

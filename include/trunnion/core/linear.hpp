@@ -36,30 +36,30 @@ Mat3<T> skew(const Vec3<T>& a) {
 /// minutes of compiling.
 template <class T, int R, int K, int C>
 Eigen::Matrix<T, R, C> product(const Eigen::Matrix<T, R, K>& A, const Eigen::Matrix<T, K, C>& B) {
-  Eigen::Matrix<T, R, C> AB;
+  Eigen::Matrix<T, R, C> product_of;
   for (int c = 0; c < C; ++c) {
     for (int r = 0; r < R; ++r) {
       T sum = T(0);
       for (int k = 0; k < K; ++k) sum += A.coeff(r, k) * B.coeff(k, c);
-      AB.coeffRef(r, c) = sum;
+      product_of.coeffRef(r, c) = sum;
     }
   }
-  return AB;
+  return product_of;
 }
 
 /// A P A^T of a symmetric P; exactly symmetric.
 template <class T, int R, int K>
 Eigen::Matrix<T, R, R> congruence(const Eigen::Matrix<T, R, K>& A, const Eigen::Matrix<T, K, K>& P) {
-  const Eigen::Matrix<T, R, K> AP = product(A, P);
-  Eigen::Matrix<T, R, R> APA;
+  const Eigen::Matrix<T, R, K> left = product(A, P);
+  Eigen::Matrix<T, R, R> result;
   for (int c = 0; c < R; ++c) {
     for (int r = 0; r <= c; ++r) {
       T sum = T(0);
-      for (int k = 0; k < K; ++k) sum += AP.coeff(r, k) * A.coeff(c, k);
-      APA.coeffRef(r, c) = APA.coeffRef(c, r) = sum;
+      for (int k = 0; k < K; ++k) sum += left.coeff(r, k) * A.coeff(c, k);
+      result.coeffRef(r, c) = result.coeffRef(c, r) = sum;
     }
   }
-  return APA;
+  return result;
 }
 
 }  // namespace trunnion

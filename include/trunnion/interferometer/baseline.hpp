@@ -89,11 +89,11 @@ class FloatBaseline {
     z_ = decorrelation_.forth() * (a - whole_);
     // Q_b G^T Z (L^T D L)^-1
     sensitivity_ = Q_b_ * G.transpose() * decorrelation_.forth().transpose();
-    const auto& L = decorrelation_.L();
+    const auto& L = decorrelation_.lower();
     for (int k = n - 1; k >= 0; --k) {  // X L = S
       for (int i = k + 1; i < n; ++i) sensitivity_.col(k) -= L(i, k) * sensitivity_.col(i);
     }
-    for (int k = 0; k < n; ++k) sensitivity_.col(k) /= decorrelation_.D()(k);
+    for (int k = 0; k < n; ++k) sensitivity_.col(k) /= decorrelation_.variances()(k);
     for (int k = 0; k < n; ++k) {  // Y L^T = X
       for (int i = 0; i < k; ++i) sensitivity_.col(k) -= L(k, i) * sensitivity_.col(i);
     }
@@ -108,7 +108,7 @@ class FloatBaseline {
   [[nodiscard]] const DoubleDifferences<T, N>& pairs() const { return pairs_; }
   /// Eq. (1) and its covariance.
   [[nodiscard]] const Vec3<T>& b() const { return b_; }
-  [[nodiscard]] const Mat3<T>& Q_b() const { return Q_b_; }
+  [[nodiscard]] const Mat3<T>& b_covariance() const { return Q_b_; }
   /// Of the codes alone.
   [[nodiscard]] const BaselineSum<T>& code() const { return code_; }
   [[nodiscard]] const Decorrelation<T, N>& decorrelation() const { return decorrelation_; }
@@ -190,7 +190,7 @@ Result<BaselineFix<T, N>> resolve_all(const SingleDifferences<T, N>& set, const 
   if (real.status() != Status::kOk) return real.status();
   fix.satellites = set.count;
   fix.float_b = real.b();
-  fix.float_covariance = real.Q_b();
+  fix.float_covariance = real.b_covariance();
   fix.degrees = real.pairs().count() + (known.length > T(0) ? 1 : 0);
   fix.bootstrapped_success = real.decorrelation().bootstrapped_success();
   const T degrees = T(fix.degrees);

@@ -73,9 +73,9 @@ class Decorrelation {
   /// kOk; kOutOfRange where Q is not positive definite, or not finite.
   [[nodiscard]] Status status() const { return status_; }
   [[nodiscard]] int size() const { return static_cast<int>(D_.size()); }
-  [[nodiscard]] const BoundedMatrix<T, N>& L() const { return L_; }
+  [[nodiscard]] const BoundedMatrix<T, N>& lower() const { return L_; }
   /// Conditional variances, eq. (2).
-  [[nodiscard]] const BoundedVector<T, N>& D() const { return D_; }
+  [[nodiscard]] const BoundedVector<T, N>& variances() const { return D_; }
   /// Z^-T: whole numbers.
   [[nodiscard]] const BoundedMatrix<T, N>& back() const { return A_; }
   /// Z^T a, by the whole numbers of Z^-T: exact for whole a that fit the mantissa.
@@ -197,8 +197,8 @@ void integer_search(const Decorrelation<T, N>& of, const BoundedVector<T, N>& z_
                     const SearchLimits& limits, const Further& H, IntegerCandidates<T, N, K>& found) {
   using std::round;
   const int n = of.size();
-  const auto& L = of.L();
-  const auto& D = of.D();
+  const auto& L = of.lower();
+  const auto& D = of.variances();
   found.count = 0;
   BoundedVector<T, N> z(n);
   BoundedVector<T, N> zeta(n);
