@@ -43,8 +43,6 @@ struct Solution {
   bool refused = false;
   /// m, of slaves whose phases fit but for the length that was stated; 0: no such case.
   std::array<double, 2> other_length{};
-  double length_free =
-      0.0;  ///< m, of two antennas whose phases fit but for the length that was stated; 0: no such case
 };
 
 enum class AttitudeFilter { kNone, kPaper, kMultiplicative };

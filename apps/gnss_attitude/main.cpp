@@ -370,8 +370,8 @@ class Run {
     if (figures_.left_out.too_many > 0)
       warn(std::to_string(figures_.left_out.too_many) + " signals beyond the " + std::to_string(kMostSignals) +
            " of an epoch were left out");
-    if (o_.smooth) engine_->smooth(solutions_);
     if (o_.smooth) {
+      engine_->smooth(solutions_);
       for (const Solution& s : solutions_) tally_.add(s);
     }
     const nlohmann::ordered_json tree = tally_.json(options_);

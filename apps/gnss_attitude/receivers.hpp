@@ -60,7 +60,6 @@ class MessageReceivers {
   bool finish();
 
   [[nodiscard]] const ReceiverFigures& figures() const { return figures_; }
-  [[nodiscard]] const io::OrbitBook& orbits() const { return orbits_; }
   /// Messages that held none of the signals.
   [[nodiscard]] long long without_signal() const { return without_signal_; }
   /// Messages that were none of ours, or damaged.

@@ -172,7 +172,7 @@ TEST(RealBaseline, IsNotFixedWronglyByHalfACycle) {
     }
     std::printf("[ FIGURE ] half a cycle on one of %d satellites, each in turn: fixed %.1f %%, of all wrong %.2f %%\n",
                 epochs[0].count, 100.0 * fixed / all, 100.0 * wrong / all);
-    EXPECT_LE(wrong, all / 100) << mask;
+    EXPECT_LE(1000 * wrong, all) << mask;
   }
 }
 

@@ -240,7 +240,7 @@ TEST(AttitudeTracker, HoldsWithFewSatellitesAndNeverGuesses) {
     if (k >= 50) {  // a street canyon
       for (auto& antenna : seen.antenna) antenna.count = std::min(antenna.count, k < 75 ? 4 : 3);
     }
-    const auto place = antenna_place(k < 50 ? seen.antenna[0] : seen.antenna[0], kPlace);
+    const auto place = antenna_place(seen.antenna[0], kPlace);
     std::array<SingleDifferences<double, kMostSignals>, 2> sets;
     AntennaPlace there;
     there.r = place.ok() ? place.value().r : kPlace;

@@ -8,6 +8,8 @@
 
 #include <cmath>
 
+#include "trunnion/core/chi_square.hpp"
+
 namespace trunnion {
 
 /// Upper quantile of the standard normal for a tail of @p p < 0.5: Abramowitz & Stegun 26.2.23, |error| < 4.5e-4.
@@ -23,8 +25,7 @@ struct ChiSquareBand {
 /// Two-sided band that chi-square with @p n degrees of freedom leaves with probability @p false_alarm.
 inline ChiSquareBand chi_square_band(double n, double false_alarm) {
   const double z = normal_quantile(0.5 * false_alarm);
-  const double a = 2.0 / (9.0 * n);
-  return {n * std::pow(1.0 - a - z * std::sqrt(a), 3), n * std::pow(1.0 - a + z * std::sqrt(a), 3)};
+  return {chi_square_quantile(n, -z), chi_square_quantile(n, z)};
 }
 
 }  // namespace trunnion

@@ -8,13 +8,16 @@
 ///   phi <- Exp(-w t) phi +- Jr(w t) t d_w,   + for a rate, - for a bias                                     ... (3)
 ///   Q = [Jr q t^3/3 Jr^T, +- Jr q t^2/2; ., q t]  (+ n^2 t I for gyros of noise n)                          ... (4)
 ///   rate and bias: w' = -w / tau + noise of density q; a random walk for an infinite tau
-///   m' = -m / tau_m + noise, in the steady state k^2 N^-1: errors of the vectors seen that do not change at once ...
-///   (5) update: x minimises x^T P^-1 x + r(x)^T N r(x), iterated; H of (2) of vector_observation.hpp times Jr(phi) ...
-///   (6) K = P H^T N (I + H P H^T N)^-1,   P <- G ((I - KH) P (I - KH)^T + K N^-1 K^T) G^T,   G = Jr(phi)         ...
-///   (7)
+///   m' = -m / tau_m + noise, in the steady state k^2 N^-1: errors of what is seen that stay for a while     ... (5)
 ///
-/// (7) is Joseph's form with the information N of what was seen: N may be singular, few satellites are not none. NIS is
-/// of the last iterate: of the first, it takes the curvature of a large correction for noise.
+/// An update minimises x^T P^-1 x + r(x)^T N r(x), iterated; H is (2) of vector_observation.hpp times Jr(phi):
+///
+///   x <- x + F (P H^T N r - x),   F = (I + P H^T N H)^-1                                                  ... (6)
+///   P <- G F (P + P H^T N H P) F^T G^T,   G = Jr(phi),   NIS = r^T N r + x^T H^T N r                       ... (7)
+///
+/// N, the information of what was seen, may be singular: few satellites are not none; and so may P. What an iteration
+/// adds is small against x and keeps its digits, in float too. NIS is of the last iterate: of the first, it takes the
+/// curvature of a large correction for noise.
 ///
 /// Lefferts, Markley & Shuster, J. Guidance 5 (1982), 417; Markley, J. Guidance 26 (2003), 311; Bell & Cathey, IEEE TAC
 /// 38 (1993), 294 for the iteration; docs/theory/interferometer.md.

@@ -10,7 +10,7 @@
 ///
 /// The computed quaternion is that of attitude_by_equation_six(). Its sign is that nearer to the prediction, and the
 /// state is made a unit quaternion again after each step: without either it fails. R of full rank is wrong, four
-/// numbers carry three errors, and P comes out optimistic: NEES/3 of 2 to 3 (tests). Jwo, CMC 66 (2021), 2105, sec. 3.
+/// numbers carry three errors, and P comes out optimistic. Jwo, CMC 66 (2021), 2105, sec. 3.
 
 #pragma once
 

@@ -165,6 +165,7 @@ Result<SingleDifferences<T, N>> single_differences(const AntennaEpoch<N>& master
   const double apart = slave.time - master.time;
   if (!(std::abs(apart) <= kFarthest)) return Status::kTimeOut;
   const Mat3<double> C_ne = north_from_earth(place.r);
+  const double lowest = std::sin(noise.mask);
   struct Pair {
     const AntennaSignal* m;
     const AntennaSignal* s;
@@ -177,7 +178,7 @@ Result<SingleDifferences<T, N>> single_differences(const AntennaEpoch<N>& master
   for (int i = 0; i < master.count; ++i) {
     const AntennaSignal& m = master.at[static_cast<std::size_t>(i)];
     const Vec3<double> e = C_ne * (m.sent.r - place.r).normalized();
-    if (!(-e.z() >= std::sin(noise.mask))) continue;
+    if (!(-e.z() >= lowest)) continue;
     for (int j = 0; j < slave.count; ++j) {
       const AntennaSignal& s = slave.at[static_cast<std::size_t>(j)];
       if (s.satellite != m.satellite || s.group != m.group) continue;

@@ -11,8 +11,8 @@
 ///
 /// E is that of integer_least_squares.hpp. The length is an observation: it bends no codes, and 10 mm off it costs four
 /// in F where s_L is 5 mm, not the fix. (5): the whole fit, against n + 1 degrees of freedom, and e^(-gap/2) for the
-/// odds of the second candidate, in noise as large as that of the fit. The ratio of E_2 to E_1 is told and not used:
-/// with five satellites four in five that pass it are wrong (docs/theory/interferometer.md). Teunissen, J. Geodesy 84
+/// odds of the second candidate, in noise as large as that of the fit. The ratio of E_2 to E_1 is not
+/// used: with few satellites wrong fixes pass it. Teunissen, J. Geodesy 84
 /// (2010), 413 (C-LAMBDA).
 
 #pragma once

@@ -204,7 +204,6 @@ void integer_search(const Decorrelation<T, N>& of, const BoundedVector<T, N>& z_
   BoundedVector<T, N> zeta(n);
   BoundedVector<T, N> step(n);
   BoundedVector<T, N> before(n);  // E of the numbers above
-  // row k of S: sum over i > k' >= k, as far down as it has been needed
   const auto centre = [&](int k) {
     T sum = z_float(k);
     for (int i = k + 1; i < n; ++i) sum += (z(i) - zeta(i)) * L(i, k);
