@@ -21,8 +21,7 @@ class EngineOf : public Engine {
  public:
   using Sets = std::array<SingleDifferences<double, kMostSignals>, static_cast<std::size_t>(M)>;
 
-  explicit EngineOf(const EngineOptions& options)
-      : options_(options), figure_(figure(options)), resolver_(figure_, options.tracker.fix) {}
+  explicit EngineOf(const EngineOptions& options) : options_(options), figure_(figure(options)) {}
 
   Solution add(const ArrayEpoch& epoch) final {
     Solution solution;
@@ -74,19 +73,33 @@ class EngineOf : public Engine {
     for (int k = 0; k < M; ++k) b.col(k) = options.slaves[static_cast<std::size_t>(k)];
     return RigidVectors<double, M>(b, options.figure_sigma);
   }
-  virtual EpochAttitude<double, M> resolve(double, const Sets& sets, Solution& solution) {
+  /// The epoch @p t [s] after the last one; its status and attitude to @p solution.
+  virtual EpochAttitude<double, M> resolve(double t, const Sets& sets, Solution& solution) = 0;
+
+  EngineOptions options_;
+  RigidVectors<double, M> figure_;
+  AntennaPlace place_;
+  bool has_place_ = false;
+  GpsTime last_;
+};
+
+/// Each epoch by itself.
+template <int M>
+class UnfilteredEngine : public EngineOf<M> {
+ public:
+  explicit UnfilteredEngine(const EngineOptions& options)
+      : EngineOf<M>(options), resolver_(this->figure_, options.tracker.fix) {}
+
+ protected:
+  EpochAttitude<double, M> resolve(double, const typename EngineOf<M>::Sets& sets, Solution& solution) override {
     EpochAttitude<double, M> alone = resolver_.resolve(sets);
     solution.status = alone.status;
     solution.attitude = alone.attitude;
     return alone;
   }
 
-  EngineOptions options_;
-  RigidVectors<double, M> figure_;
+ private:
   ArrayResolver<double, M, kMostSignals> resolver_;
-  AntennaPlace place_;
-  bool has_place_ = false;
-  GpsTime last_;
 };
 
 template <int M, bool Coloured>
@@ -185,13 +198,13 @@ class TrackedEngine final : public EngineOf<M> {
 };
 
 /// The paper's filter on the quaternion of its equation (6); where an epoch is not fixed it predicts.
-class PaperEngine final : public EngineOf<2> {
+class PaperEngine final : public UnfilteredEngine<2> {
  public:
-  using EngineOf<2>::EngineOf;
+  using UnfilteredEngine<2>::UnfilteredEngine;
 
  private:
   EpochAttitude<double, 2> resolve(double t, const Sets& sets, Solution& solution) override {
-    EpochAttitude<double, 2> alone = EngineOf<2>::resolve(t, sets, solution);
+    EpochAttitude<double, 2> alone = UnfilteredEngine<2>::resolve(t, sets, solution);
     if (filter_ && filter_->predict(std::min(t, kLongestGap)) != Status::kOk) filter_.reset();
     const bool whole = alone.status == AttitudeStatus::kFixed && alone.attitude.observable == 3;
     if (whole) {
@@ -231,7 +244,7 @@ class PaperEngine final : public EngineOf<2> {
 
 template <int M>
 std::unique_ptr<Engine> make_of(const EngineOptions& options) {
-  if (options.filter == AttitudeFilter::kNone) return std::make_unique<EngineOf<M>>(options);
+  if (options.filter == AttitudeFilter::kNone) return std::make_unique<UnfilteredEngine<M>>(options);
   if (options.tracker.noise.coloured > 0.0) return std::make_unique<TrackedEngine<M, true>>(options);
   return std::make_unique<TrackedEngine<M, false>>(options);
 }

@@ -3,7 +3,8 @@
 /// @file
 /// RINEX 2 and 3 as they should be, and as they come: cut, doubled, mixed up, of another version.
 
-#include "trunnion/io/rinex.hpp"
+#include "trunnion/io/observation_reader.hpp"
+#include "trunnion/io/orbit_book.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

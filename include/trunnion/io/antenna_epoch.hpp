@@ -10,7 +10,8 @@
 #include <vector>
 
 #include "trunnion/interferometer/antenna_signals.hpp"
-#include "trunnion/io/rinex.hpp"
+#include "trunnion/io/observation_reader.hpp"
+#include "trunnion/io/orbit_book.hpp"
 
 namespace trunnion::io {
 

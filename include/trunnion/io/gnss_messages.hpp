@@ -14,7 +14,8 @@
 #include <vector>
 
 #include "trunnion/interferometer/attitude_tracker.hpp"
-#include "trunnion/io/rinex.hpp"
+#include "trunnion/io/observation_reader.hpp"
+#include "trunnion/io/orbit_book.hpp"
 
 namespace trunnion::io {
 

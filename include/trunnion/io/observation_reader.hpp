@@ -1,18 +1,14 @@
 // SPDX-FileCopyrightText: 2026 the trunnion authors
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// RINEX 2.1x and 3 as receivers' programs write it: observations by epoch, and broadcast orbits.
+/// RINEX 2.1x and 3 observation files as receivers' programs write them, epoch by epoch.
 ///
-/// GPS, Galileo, QZSS and BeiDou; other systems are passed over. A signal is named as in RINEX 3, system and two
-/// characters: "G1C" is C1C and L1C of GPS; version 2's C1, P1, L1, ... take the names that stand for them (C1 and L1:
-/// G1C). Times are GPS time; BeiDou's messages are in its own, 14 s behind, and are carried over.
-/// RINEX 2.11 (Gurtner & Estey, 2007); RINEX 3.04 (IGS & RTCM, 2018), tables 5-13 and A2-A12.
+/// Systems other than GPS, Galileo, QZSS and BeiDou are passed over. Version 2's C1, P1, L1, ... take the names that
+/// stand for them (C1 and L1: G1C). Times are GPS time.
+/// RINEX 2.11 (Gurtner & Estey, 2007); RINEX 3.04 (IGS & RTCM, 2018), tables 5-13 and A2-A4.
 
 #pragma once
 
-#include <array>
-#include <cstdint>
-#include <functional>
 #include <limits>
 #include <map>
 #include <string>
@@ -21,28 +17,9 @@
 
 #include "trunnion/interferometer/broadcast_orbit.hpp"
 #include "trunnion/io/digest.hpp"
+#include "trunnion/io/rinex_names.hpp"
 
 namespace trunnion::io {
-
-struct SatelliteName {
-  SatelliteSystem system = SatelliteSystem::kGps;
-  int number = 0;
-  /// "G05".
-  [[nodiscard]] std::string text() const;
-  /// One number for each satellite of every system.
-  [[nodiscard]] int index() const { return static_cast<int>(system) * 100 + number; }
-};
-
-/// A system's signal: its letter, then band and attribute, "G1C".
-struct SignalName {
-  SatelliteSystem system = SatelliteSystem::kGps;
-  std::array<char, 2> code{};
-  [[nodiscard]] std::string text() const;
-  /// m. @throws Error (input) for a band that the system has not
-  [[nodiscard]] double wavelength() const;
-  /// @throws Error (usage) for what names no signal of the four systems
-  static SignalName parse(const std::string& text);
-};
 
 /// One signal of one satellite; what was not measured is not a number.
 struct SignalObservation {
@@ -57,13 +34,6 @@ struct SignalObservation {
 struct ObservationEpoch {
   GpsTime time;
   std::vector<SignalObservation> at;
-};
-
-/// What was passed over in a file.
-struct RinexLosses {
-  long long epochs = 0;      ///< that could not be read
-  long long satellites = 0;  ///< lines of them
-  std::string first;         ///< what is wrong with the first: "file:line: field: ..."
 };
 
 /// An observation file, epoch by epoch.
@@ -130,31 +100,5 @@ class ObservationReader {
   Vec3<double> position_ = Vec3<double>::Zero();
   RinexLosses losses_;
 };
-
-/// Broadcast orbits, the one nearest in time for each satellite.
-class OrbitBook {
- public:
-  /// Adds a navigation file's; messages that cannot be read are counted. @throws Error (input) for a file that is
-  /// missing, is no navigation file or holds no orbit
-  void add(const std::string& path);
-  /// One more; one of the same satellite and toe is replaced.
-  void add(const BroadcastOrbit& orbit);
-
-  /// The healthy orbit whose toe is nearest to @p time, kOrbitLasts at most; nullptr where there is none.
-  [[nodiscard]] const BroadcastOrbit* at(const SatelliteName& satellite, const GpsTime& time) const;
-  void each(const std::function<void(const BroadcastOrbit&)>& visit) const;
-  [[nodiscard]] const RinexLosses& losses() const { return losses_; }
-  [[nodiscard]] const std::string& digest() const { return digest_; }
-  [[nodiscard]] std::size_t size() const { return count_; }
-
- private:
-  std::map<int, std::vector<BroadcastOrbit>> orbits_;
-  std::size_t count_ = 0;
-  RinexLosses losses_;
-  std::string digest_;
-};
-
-/// Calendar to GPS time; the calendar is that of GPS, without leap seconds.
-GpsTime gps_time(int year, int month, int day, int hour, int minute, double second);
 
 }  // namespace trunnion::io
