@@ -1,16 +1,19 @@
 // SPDX-FileCopyrightText: 2026 the trunnion authors
 // SPDX-License-Identifier: BSD-3-Clause
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 
 #include "../terminal.hpp"
 #include "command.hpp"
+#include "result.hpp"
 #include "trunnion/core/earth.hpp"
 #include "trunnion/core/units.hpp"
 #include "trunnion/io/calibration_file.hpp"
 #include "trunnion/io/lcm_recording.hpp"
 #include "trunnion/io/sensor_sheet.hpp"
+#include "trunnion/io/table_moves.hpp"
 #include "trunnion/io/urdf.hpp"
 #include "trunnion/io/whole_file.hpp"
 #include "trunnion/simulation/table_run.hpp"
@@ -21,6 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Options {
+  std::string run;
   std::string output;
   std::string sheet = shared_file("3dm-cv7.yaml");
   std::string rig = shared_file("two_axis_table.urdf");
@@ -70,39 +74,102 @@ class ImuMessages {
   std::string message_;
 };
 
+/// What is simulated: a bench, a unit, and the moves of each recording.
+struct Bench {
+  io::SensorSheet sheet;
+  io::RigFile rig;
+  Site site;
+  io::TableMoves moves;
+  std::vector<int> mount;         // of each recording
+  std::vector<std::string> logs;  // names within the folder
+  std::string serial;
+  std::vector<std::pair<std::string, std::string>> copies;  // file, and its name within the folder
+};
+
+Bench bench_of_options(const Options& o, std::string& run) {
+  Bench bench;
+  bench.sheet = io::read_sensor_sheet(o.sheet);
+  bench.rig = io::read_rig(o.rig, "azimuth", "pitch");
+  const AxisLimits& pitch = bench.rig.limits[kPitch];
+  if (pitch.endless())
+    throw Error(ExitCode::kInput, o.rig +
+                                      ": joint 'pitch' has no limits to plan the swings by: write a plan, and "
+                                      "simulate its run file");
+  bench.site.latitude = o.latitude_deg * kRadPerDeg;
+  bench.site.gravity = normal_gravity(bench.site.latitude, o.height_m);
+  bench.site.gravity_sigma = o.gravity_sigma;
+  bench.serial = "simulated, seed " + std::to_string(o.seed);
+  bench.copies = {{o.rig, "rig.urdf"}, {o.sheet, "sheet.yaml"}};
+  run = "format: trunnion-run/1\n";
+  run += "site:  {latitude_deg: " + figure(o.latitude_deg, 12) + ", height_m: " + figure(o.height_m, 12) +
+         ", gravity_m_s2: " + figure(bench.site.gravity, 12) + ", gravity_sigma_m_s2: " + figure(o.gravity_sigma, 6) +
+         "}\n";
+  run += "rig:   rig.urdf\n";
+  if (!o.no_sheet) run += "sheet: sheet.yaml\n";
+  run += "serial: \"" + bench.serial + "\"\nrecordings:\n";
+  for (int m = 0; m < bench.rig.rig.mounts; ++m) {
+    bench.moves.push_back(o.rest_only ? simulation::rest_only(pitch.lowest, pitch.highest)
+                                      : simulation::experiment(pitch.lowest, pitch.highest, m));
+    bench.mount.push_back(m);
+    bench.logs.push_back("position_" + std::to_string(m + 1) + ".lcm");
+    run += "  - {mount: " + bench.rig.mounts[static_cast<std::size_t>(m)] + ", log: " + bench.logs.back() + "}\n";
+  }
+  return bench;
+}
+
+/// Of a run file with moves, as `plan` writes it: its files lie beside it, its logs are the ones to be made.
+Bench bench_of_run(const std::string& path, std::string& text) {
+  const io::RunFile run = io::read_run_file(path);
+  if (run.rig.empty() || run.moves.empty() || run.sheet_path.empty())
+    throw Error(ExitCode::kInput, path + ": to be simulated, a run needs a rig, a sheet and moves");
+  Bench bench;
+  bench.sheet = run.sheet;
+  const std::vector<std::string> mounts = mounts_of(run);
+  bench.rig = io::read_rig(run.rig, run.outer_axis, run.inner_axis, mounts);
+  bench.site = run.site;
+  bench.moves = io::read_table_moves(run.moves, run.recordings.size());
+  bench.serial = run.serial;
+  const fs::path folder = fs::path(path).parent_path();
+  const auto beside = [&](const std::string& file) {
+    const std::string name = fs::path(file).lexically_relative(folder.empty() ? fs::path(".") : folder).string();
+    if (name.empty() || name.rfind("..", 0) == 0)
+      throw Error(ExitCode::kInput, path + ": to be simulated, a run has its files in its own folder, not " + file);
+    return name;
+  };
+  for (const std::string& file : {run.rig, run.sheet_path, run.moves}) bench.copies.emplace_back(file, beside(file));
+  for (std::size_t r = 0; r < run.recordings.size(); ++r) {
+    const io::RecordingFiles& files = run.recordings[r];
+    if (files.lcm.empty())
+      throw Error(ExitCode::kInput, path + ": to be simulated, a recording has one LCM log: " + files.name());
+    bench.logs.push_back(beside(files.lcm));
+    bench.mount.push_back(static_cast<int>(std::find(mounts.begin(), mounts.end(), files.mount) - mounts.begin()));
+    simulation::check_limits(bench.moves[r], bench.rig.limits, run.moves + ": recording " + std::to_string(r + 1));
+  }
+  text = io::read_whole(path);
+  return bench;
+}
+
 void simulate(const Options& o) {
-  const io::SensorSheet sheet = io::read_sensor_sheet(o.sheet);
-  const io::RigFile rig = io::read_rig(o.rig, "azimuth", "pitch");
-  if (rig.pitch_lower == rig.pitch_upper)
-    throw Error(ExitCode::kInput, o.rig + ": joint 'pitch' has no limits to plan the swings by");
+  std::string run;
+  const Bench bench = o.run.empty() ? bench_of_options(o, run) : bench_of_run(o.run, run);
   simulation::TableRunSettings settings;
   settings.seed = o.seed;
-  if (sheet.rate_hz > 0.0) settings.rate = sheet.rate_hz;
-  if (sheet.has_noise) settings.noise = sheet.noise;
+  if (bench.sheet.rate_hz > 0.0) settings.rate = bench.sheet.rate_hz;
+  if (bench.sheet.has_noise) settings.noise = bench.sheet.noise;
   settings.outlier_fraction = 0.01 * o.outliers_percent;
   settings.dropped_fraction = 0.01 * o.dropped_percent;
   if (o.noise_free) settings = settings.noise_free();
-  Site site;
-  site.latitude = o.latitude_deg * kRadPerDeg;
-  site.gravity = normal_gravity(site.latitude, o.height_m);
-  site.gravity_sigma = o.gravity_sigma;
-  const CalibrationValues truth = simulation::draw_truth(settings, rig.rig, site, rig.rig.mounts);
+  const auto recordings = static_cast<int>(bench.logs.size());
+  const CalibrationValues truth = simulation::draw_truth(settings, bench.rig.rig, bench.site, recordings);
 
   std::error_code error;
   fs::create_directories(o.output, error);
   if (error) throw Error(ExitCode::kInput, o.output + ": cannot make the folder: " + error.message());
   const fs::path folder(o.output);
   ProgressLine progress;
-  std::string run = "format: trunnion-run/1\n";
-  run += "site:  {latitude_deg: " + figure(o.latitude_deg, 12) + ", height_m: " + figure(o.height_m, 12) +
-         ", gravity_m_s2: " + figure(site.gravity, 12) + ", gravity_sigma_m_s2: " + figure(o.gravity_sigma, 6) + "}\n";
-  run += "rig:   rig.urdf\n";
-  if (!o.no_sheet) run += "sheet: sheet.yaml\n";
-  run += "serial: \"simulated, seed " + std::to_string(o.seed) + "\"\nrecordings:\n";
-  for (int m = 0; m < rig.rig.mounts; ++m) {
-    const std::string name = "position_" + std::to_string(m + 1) + ".lcm";
-    progress.show("simulating " + name);
-    io::LcmLogWriter log((folder / name).string());
+  for (std::size_t r = 0; r < bench.logs.size(); ++r) {
+    progress.show("simulating " + bench.logs[r]);
+    io::LcmLogWriter log((folder / bench.logs[r]).string());
     std::string message;
     ImuMessages imu(o.batch, log);
     simulation::TableSinks sinks;
@@ -113,30 +180,31 @@ void simulate(const Options& o) {
       io::encode_encoder(utime, sequence, azimuth, pitch, message);
       log.write(utime, "ENCODER", message);
     };
-    const simulation::TableMotion motion = o.rest_only ? simulation::rest_only(rig.pitch_lower, rig.pitch_upper)
-                                                       : simulation::experiment(rig.pitch_lower, rig.pitch_upper, m);
-    simulation::run_table(settings, truth, rig.rig, site, motion, m, m, sinks);
+    const simulation::TableMotion motion = simulation::motion_of(bench.moves[r], bench.rig.limits);
+    simulation::run_table(settings, truth, bench.rig.rig, bench.site, motion, bench.mount[r], static_cast<int>(r),
+                          sinks);
     imu.finish();
     log.commit();
-    run += "  - {mount: " + rig.mounts[static_cast<std::size_t>(m)] + ", log: " + name + "}\n";
   }
 
   io::CalibrationFile file;
-  file.model = sheet.model;
-  file.serial = "simulated, seed " + std::to_string(o.seed);
+  file.model = bench.sheet.model;
+  file.serial = bench.serial;
   file.record.value = truth;
   file.record.has_rig = true;
-  file.record.mounts = rig.rig.mounts;
-  file.record.recordings = rig.rig.mounts;
-  for (int m = 0; m < rig.rig.mounts; ++m) file.record.recording_mount[static_cast<std::size_t>(m)] = m;
-  file.mounts = rig.mounts;
-  file.gauge = {"pitch_encoder_zero", rig.mounts.front() + "_datum"};
+  file.record.mounts = bench.rig.rig.mounts;
+  file.record.recordings = recordings;
+  for (std::size_t r = 0; r < bench.mount.size(); ++r) file.record.recording_mount[r] = bench.mount[r];
+  file.mounts = bench.rig.mounts;
+  file.gauge = {"pitch_encoder_zero", bench.rig.mounts.front() + "_datum"};
   file.tool = tool_name() + " simulate";
   file.run = "run.yaml";
   file.seed = static_cast<long long>(o.seed);
   io::write_whole((folder / "truth.yaml").string(), io::to_yaml(file));
-  io::write_whole((folder / "rig.urdf").string(), io::read_whole(o.rig));
-  io::write_whole((folder / "sheet.yaml").string(), io::read_whole(o.sheet));
+  for (const auto& [from, name] : bench.copies) {
+    std::error_code same;
+    if (!fs::equivalent(from, folder / name, same)) io::write_whole((folder / name).string(), io::read_whole(from));
+  }
   io::write_whole((folder / "run.yaml").string(), run);
 }
 
@@ -147,20 +215,25 @@ void add_simulate(CLI::App& app, ExitCode& exit_code) {
       app.add_subcommand("simulate", "Record a simulated run: logs, run file, sheet, rig, and the truth");
   auto o = std::make_shared<Options>();
   command->add_option("-o,--output", o->output, "Folder to write, made if it is not there")->required();
+  CLI::Option* run = command->add_option(
+      "run", o->run, "Run file with moves, as plan writes it; without one, the experiment in every mount of the rig");
   command->add_option("--seed", o->seed, "Of every random number")
       ->capture_default_str()
       ->check(CLI::Range(0, 2147483647));
-  command->add_option("--sheet", o->sheet, "Sensor sheet of the unit");
-  command->add_option("--rig", o->rig, "URDF of the table");
+  command->add_option("--sheet", o->sheet, "Sensor sheet of the unit")->excludes(run);
+  command->add_option("--rig", o->rig, "URDF of the table")->excludes(run);
   command->add_option("--latitude-deg", o->latitude_deg, "Of the bench")
       ->capture_default_str()
-      ->check(CLI::Range(-90.0, 90.0));
+      ->check(CLI::Range(-90.0, 90.0))
+      ->excludes(run);
   command->add_option("--height-m", o->height_m, "Of the bench")
       ->capture_default_str()
-      ->check(CLI::Range(-500.0, 10000.0));
+      ->check(CLI::Range(-500.0, 10000.0))
+      ->excludes(run);
   command->add_option("--gravity-sigma-m-s2", o->gravity_sigma, "How well gravity is known there")
       ->capture_default_str()
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::PositiveNumber)
+      ->excludes(run);
   command->add_option("--outliers-percent", o->outliers_percent, "Samples off by 1 rad/s and 5 m/s^2")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 100.0));
@@ -171,8 +244,8 @@ void add_simulate(CLI::App& app, ExitCode& exit_code) {
       ->capture_default_str()
       ->check(CLI::Range(1, 1000));
   command->add_flag("--noise-free", o->noise_free, "No noise, no wander, exact encoders");
-  command->add_flag("--rest-only", o->rest_only, "The table never turns: a run that cannot be solved");
-  command->add_flag("--no-sheet", o->no_sheet, "Leave the sheet out of the run file");
+  command->add_flag("--rest-only", o->rest_only, "The table never turns: a run that cannot be solved")->excludes(run);
+  command->add_flag("--no-sheet", o->no_sheet, "Leave the sheet out of the run file")->excludes(run);
   command->footer("Example:\n  imu_calibrate simulate --seed 7 -o run7 && imu_calibrate solve run7/run.yaml");
   command->callback([o, &exit_code] {
     simulate(*o);

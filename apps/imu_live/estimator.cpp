@@ -128,7 +128,8 @@ void Estimator::take(Job& job) {
       solve_.abandon();
       solve_.begin(mount_);
     }
-    plan_ = TablePlan(run_.plan, rig_.pitch_lower, rig_.pitch_upper);
+    const AxisLimits& pitch = rig_.limits[kPitch];
+    plan_ = pitch.endless() ? TablePlan(run_.plan, 0.0, 0.0) : TablePlan(run_.plan, pitch.lowest, pitch.highest);
     watch_.emplace(rig_.rig, run_.site, mount_);
     ahead_.clear();
     said_mount_ = said_moved_ = false;

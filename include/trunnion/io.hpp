@@ -19,4 +19,5 @@
 #include "trunnion/io/orbit_book.hpp"
 #include "trunnion/io/run_file.hpp"
 #include "trunnion/io/sensor_sheet.hpp"
+#include "trunnion/io/table_moves.hpp"
 #include "trunnion/io/whole_file.hpp"

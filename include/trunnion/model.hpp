@@ -44,6 +44,7 @@
 #include "trunnion/positions/entry.hpp"
 #include "trunnion/positions/observation.hpp"
 #include "trunnion/positions/sample_sink.hpp"
+#include "trunnion/positions/table_move.hpp"
 #include "trunnion/positions/twelve.hpp"
 #include "trunnion/strapdown/attitude.hpp"
 #include "trunnion/strapdown/body_motion.hpp"

@@ -13,3 +13,4 @@
 #include "trunnion/simulation/gnss_array.hpp"
 #include "trunnion/simulation/rotating_platform.hpp"
 #include "trunnion/simulation/table_run.hpp"
+#include "trunnion/simulation/table_sequence.hpp"

@@ -34,6 +34,8 @@ constexpr std::array<Unit, 3> kForceUnits = {
     {{"m/s^2", "_m_s2", 1.0}, {"g", "_g", kStandardGravity}, {"mg", "_mg", 1e-3 * kStandardGravity}}};
 constexpr std::array<Unit, 2> kAngleUnits = {{{"rad", "_rad", 1.0}, {"deg", "_deg", kRadPerDeg}}};
 constexpr std::array<Unit, 1> kLengthUnits = {{{"m", "_m", 1.0}}};
+constexpr std::array<Unit, 1> kFrequencyUnits = {{{"Hz", "_hz", 1.0}}};
+constexpr std::array<Unit, 1> kNumberUnits = {{{"", "", 1.0}}};
 constexpr double kLargestReading = 1e6;  // rad/s, m/s^2, rad
 constexpr const char* kCounts = "counts";
 constexpr std::array<const char*, 6> kSensors = {"gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z"};
@@ -44,8 +46,15 @@ struct Units {
 };
 
 Units units_of(const std::string& quantity) {
-  if (quantity == "t") return {kTimeUnits.data(), kTimeUnits.size()};
-  if (quantity.rfind("gyro_", 0) == 0) return {kRateUnits.data(), kRateUnits.size()};
+  const auto ends_with = [&](const char* end) {
+    const std::string_view tail(end);
+    return quantity.size() > tail.size() && quantity.compare(quantity.size() - tail.size(), tail.size(), tail) == 0;
+  };
+  if (quantity == "t" || quantity == "duration" || quantity == "transition")
+    return {kTimeUnits.data(), kTimeUnits.size()};
+  if (quantity.rfind("gyro_", 0) == 0 || ends_with("_rate")) return {kRateUnits.data(), kRateUnits.size()};
+  if (ends_with("_frequency")) return {kFrequencyUnits.data(), kFrequencyUnits.size()};
+  if (quantity == "recording") return {kNumberUnits.data(), kNumberUnits.size()};
   if (quantity.rfind("accel_", 0) == 0) return {kForceUnits.data(), kForceUnits.size()};
   if (quantity == "h") return {kLengthUnits.data(), kLengthUnits.size()};
   return {kAngleUnits.data(), kAngleUnits.size()};

@@ -109,7 +109,7 @@ RecordingFiles read_files(const StrictYaml& node, const std::string& run, bool h
 RunFile read_run_file(const std::string& path) {
   const StrictYaml root = StrictYaml::load(path, "trunnion-run/1");
   root.only({"format", "site", "rig", "axes", "sheet", "serial", "clock", "bias", "model", "refuse_above", "recordings",
-             "limits", "channels", "lcm_types", "columns", "plan"});
+             "limits", "channels", "lcm_types", "columns", "plan", "moves"});
   RunFile run;
   run.path = path;
 
@@ -195,6 +195,7 @@ RunFile read_run_file(const std::string& path) {
     if (channels.has("encoder")) run.channels.encoder = read_channel(channels.at("encoder"), false, types, run.sheet);
   }
   if (root.has("plan")) run.plan = read_plan(root.at("plan"));
+  if (root.has("moves")) run.moves = beside(path, root.at("moves").text());
   if (root.has("columns")) run.columns = read_columns(root.at("columns"));
 
   const StrictYaml recordings = root.at("recordings");

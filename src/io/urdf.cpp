@@ -79,6 +79,18 @@ Vec3<double> axis_of(const std::string& path, const urdf::Joint& joint) {
   return axis.normalized();
 }
 
+/// A velocity of zero is none: URDF wants the attribute where nobody knows it.
+AxisLimits limits_of(const urdf::Joint& joint) {
+  AxisLimits limits;
+  if (!joint.limits) return limits;
+  if (joint.type == urdf::Joint::REVOLUTE) {
+    limits.lowest = joint.limits->lower;
+    limits.highest = joint.limits->upper;
+  }
+  if (joint.limits->velocity > 0.0) limits.rate = joint.limits->velocity;
+  return limits;
+}
+
 }  // namespace
 
 RigFile read_rig(const std::string& path, const std::string& outer_axis, const std::string& inner_axis,
@@ -155,10 +167,7 @@ RigFile read_rig(const std::string& path, const std::string& outer_axis, const s
 
   RigFile file;
   file.rig.geometry = geometry.value();
-  if (inner->limits && inner->type == urdf::Joint::REVOLUTE) {
-    file.pitch_lower = inner->limits->lower;
-    file.pitch_upper = inner->limits->upper;
-  }
+  file.limits = {limits_of(*outer), limits_of(*inner)};
   std::vector<std::string> found;
   for (const auto& [name, joint] : model->joints_) {
     const auto child = model->links_.find(joint->child_link_name);

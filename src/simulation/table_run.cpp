@@ -171,47 +171,6 @@ CalibrationValues draw_truth(const TableRunSettings& s, const Rig& rig, const Si
   return truth;
 }
 
-TableMotion experiment(double lowest, double highest, int variant) {
-  constexpr double kHold = 30.0;
-  constexpr double kMove = 3.0;
-  constexpr double kRamp = 2.0;
-  const double middle = 0.5 * (lowest + highest);
-  const double reach = 0.5 * (highest - lowest);
-  TableMotion motion{AxisCourse(0.0), AxisCourse(middle), 0.0};
-  double t = 0.0;
-  double pitch = middle;
-  const auto rest_at = [&](double angle, double time) {
-    motion.pitch.move(t, kMove, angle - pitch);
-    pitch = angle;
-    t += time;
-  };
-  // a tour of rests over the whole range
-  for (const double share : {-1.0, -0.5, 0.0, 0.5, 1.0}) rest_at(middle + share * reach, 15.0);
-  constexpr std::array<double, 5> kAmplitudeShare = {0.5, 0.5, 0.45, 0.4, 0.3};
-  constexpr std::array<double, 5> kFrequency = {0.10, 0.16, 0.22, 0.28, 0.36};
-  constexpr std::array<double, 10> kRestShare = {-1.0, 1.0, -0.6, 0.7, 0.3, -0.3, 0.9, -0.8, 0.5, -0.5};
-  for (int step = 0; step < 10; ++step) {
-    const int rate = step / 2;
-    const double direction = step % 2 == 0 ? 1.0 : -1.0;
-    const auto swing = static_cast<std::size_t>((rate + variant) % 5);
-    // at rest: out to an angle of its own, and back to the middle
-    const double start = t;
-    rest_at(middle + kRestShare[static_cast<std::size_t>(step)] * reach, kHold - kMove);
-    rest_at(middle, kMove);
-    t = start + kHold;
-    motion.azimuth.ramp(t, kRamp, direction * 10.0 * (rate + 1) * kRadPerDeg);
-    motion.pitch.oscillate(t, t + kHold, kAmplitudeShare[swing] * reach, kFrequency[swing], kRamp);
-    t += kHold;
-    motion.azimuth.ramp(t - kRamp, kRamp, 0.0);
-  }
-  motion.duration = t + kHold;
-  return motion;
-}
-
-TableMotion rest_only(double lowest, double highest) {
-  return {AxisCourse(0.0), AxisCourse(0.5 * (lowest + highest)), 60.0};
-}
-
 void run_table(const TableRunSettings& s, const CalibrationValues& truth, const Rig& rig, const Site& site,
                const TableMotion& motion, int mount, int index, const TableSinks& sinks) {
   const auto id = static_cast<std::uint64_t>(index);

@@ -51,7 +51,8 @@ class LiveBench {
   [[nodiscard]] std::vector<BusMessage> messages(int mount, double seconds = 1e9) const {
     std::vector<BusMessage> all;
     std::string message;
-    simulation::TableMotion motion = simulation::experiment(rig.pitch_lower, rig.pitch_upper, mount);
+    simulation::TableMotion motion =
+        simulation::motion_of(simulation::experiment(rig.limits[kPitch].lowest, rig.limits[kPitch].highest, mount));
     motion.duration = std::min(motion.duration, seconds);
     simulation::run_table(settings, truth, rig.rig, run.site, motion, mount, mount,
                           {[&](std::int64_t utime, std::int64_t sequence, const InertialSample<double>& sample) {

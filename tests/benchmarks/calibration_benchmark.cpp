@@ -33,7 +33,8 @@ const std::vector<std::string>& logs() {
       io::LcmLogWriter log(made.back());
       std::string message;
       simulation::run_table(settings, truth, rig, site,
-                            simulation::experiment(-10.0 * kRadPerDeg, 70.0 * kRadPerDeg, m), m, m,
+                            simulation::motion_of(simulation::experiment(-10.0 * kRadPerDeg, 70.0 * kRadPerDeg, m)), m,
+                            m,
                             {[&](std::int64_t t, std::int64_t n, const InertialSample<double>& s) {
                                io::encode_imu(t, n, s, message);
                                log.write(t, "IMU", message);

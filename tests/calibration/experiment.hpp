@@ -46,7 +46,7 @@ inline Experiment run_experiment(const simulation::TableRunSettings& settings, c
     options.name = "mount_" + std::to_string(m + 1);
     Compressor compressor(options);
     simulation::run_table(settings, experiment.truth, rig, site,
-                          simulation::experiment(-10.0 * kRadPerDeg, 70.0 * kRadPerDeg, m), m, m,
+                          simulation::motion_of(simulation::experiment(-10.0 * kRadPerDeg, 70.0 * kRadPerDeg, m)), m, m,
                           {[&](std::int64_t t, std::int64_t, const InertialSample<double>& s) { compressor.imu(t, s); },
                            [&](std::int64_t t, std::int64_t, double a, double p) { compressor.encoder(t, a, p); }});
     experiment.recordings.push_back({compressor.finish(), m});

@@ -17,8 +17,9 @@ MountWatch watch_of(const Rig& rig, int mount, int said, int windows,
   simulation::TableRunSettings settings;
   const CalibrationValues truth = simulation::draw_truth(settings, rig, bench(), 3);
   Compressor compressor({});
-  simulation::run_table(settings, truth, rig, bench(), simulation::experiment(-10.0 * kRadPerDeg, 70.0 * kRadPerDeg, 0),
-                        mount, mount,
+  simulation::run_table(settings, truth, rig, bench(),
+                        simulation::motion_of(simulation::experiment(-10.0 * kRadPerDeg, 70.0 * kRadPerDeg, 0)), mount,
+                        mount,
                         {[&](std::int64_t t, std::int64_t, const InertialSample<double>& s) {
                            compressor.imu(t, {C_turned * s.w, C_turned * s.f});
                          },

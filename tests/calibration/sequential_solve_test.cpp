@@ -46,7 +46,7 @@ Live run_live(const simulation::TableRunSettings& settings, const TableSolveOpti
       ++live.updates;
     };
     simulation::run_table(settings, live.experiment.truth, rig, site,
-                          simulation::experiment(-10.0 * kRadPerDeg, 70.0 * kRadPerDeg, m), m, m,
+                          simulation::motion_of(simulation::experiment(-10.0 * kRadPerDeg, 70.0 * kRadPerDeg, m)), m, m,
                           {[&](std::int64_t t, std::int64_t, const InertialSample<double>& s) {
                              compressor.imu(t, s);
                              if (next == 0) next = t + static_cast<std::int64_t>(1e6 * every);
@@ -108,7 +108,8 @@ TEST(SequentialSolve, WithoutASheetItWaitsForRests) {
   const CalibrationValues truth = simulation::draw_truth(settings, rig, site, 1);
   SequentialSolve sequential(rig, site, options);
   Compressor compressor({});
-  simulation::run_table(settings, truth, rig, site, simulation::rest_only(-10.0 * kRadPerDeg, 70.0 * kRadPerDeg), 0, 0,
+  simulation::run_table(settings, truth, rig, site,
+                        simulation::motion_of(simulation::rest_only(-10.0 * kRadPerDeg, 70.0 * kRadPerDeg)), 0, 0,
                         {[&](std::int64_t t, std::int64_t, const InertialSample<double>& s) { compressor.imu(t, s); },
                          [&](std::int64_t t, std::int64_t, double a, double p) { compressor.encoder(t, a, p); }});
   sequential.begin(0);

@@ -34,8 +34,8 @@ TEST_F(Urdf, TheTemplateIsTheCyclicFixture) {
   EXPECT_EQ(rig.mounts, (std::vector<std::string>{"mount_1", "mount_2", "mount_3"}));
   for (int m = 0; m < 3; ++m)
     EXPECT_TRUE(rig.rig.mount[static_cast<std::size_t>(m)].C_pb.isApprox(cyclic_mount(m), 1e-15)) << m;
-  EXPECT_NEAR(rig.pitch_lower, -10.0 * kRadPerDeg, 1e-15);
-  EXPECT_NEAR(rig.pitch_upper, 70.0 * kRadPerDeg, 1e-15);
+  EXPECT_NEAR(rig.limits[kPitch].lowest, -10.0 * kRadPerDeg, 1e-15);
+  EXPECT_NEAR(rig.limits[kPitch].highest, 70.0 * kRadPerDeg, 1e-15);
   EXPECT_TRUE(rig.rig.geometry.C_to.isIdentity(1e-15));
 }
 

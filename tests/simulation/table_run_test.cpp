@@ -57,7 +57,7 @@ TEST(AxisCourse, AngleIsTheIntegralOfItsRamps) {
 
 TEST(Experiment, KeepsThePitchWithinItsLimits) {
   for (int variant = 0; variant < 3; ++variant) {
-    const TableMotion motion = experiment(-10.0 * kRadPerDeg, 70.0 * kRadPerDeg, variant);
+    const TableMotion motion = motion_of(experiment(-10.0 * kRadPerDeg, 70.0 * kRadPerDeg, variant));
     for (double t = 0.0; t < motion.duration; t += 0.05) {
       ASSERT_GE(motion.pitch.angle(t), -10.0001 * kRadPerDeg) << t;
       ASSERT_LE(motion.pitch.angle(t), 70.0001 * kRadPerDeg) << t;
@@ -68,7 +68,7 @@ TEST(Experiment, KeepsThePitchWithinItsLimits) {
 TEST(RunTable, IsTheSameForTheSameSeedAndAnotherForAnother) {
   TableRunSettings settings;
   settings.seed = 5;
-  const TableMotion motion = rest_only(-0.1, 1.2);
+  const TableMotion motion = motion_of(rest_only(-0.1, 1.2));
   const Recorded a = record(settings, motion);
   const Recorded b = record(settings, motion);
   settings.seed = 6;
@@ -81,7 +81,7 @@ TEST(RunTable, IsTheSameForTheSameSeedAndAnotherForAnother) {
 // Switching outliers and drops on leaves the noise of every other sample as it was.
 TEST(RunTable, CausesHaveStreamsOfTheirOwn) {
   TableRunSettings settings;
-  const TableMotion motion = rest_only(-0.1, 1.2);
+  const TableMotion motion = motion_of(rest_only(-0.1, 1.2));
   const Recorded clean = record(settings, motion);
   settings.outlier_fraction = 0.01;
   settings.dropped_fraction = 0.02;
@@ -105,7 +105,7 @@ TEST(RunTable, APerfectUnitAtRestReadsTheEarth) {
   settings.gyro_bias = settings.gyro_turn_on_bias = settings.gyro_scale = settings.gyro_cross_coupling = 0.0;
   settings.gyro_cubic = settings.gyro_g_sensitivity = 0.0;
   settings.accel_bias = settings.accel_turn_on_bias = settings.accel_scale = settings.accel_cross_coupling = 0.0;
-  const Recorded run = record(settings, rest_only(-0.1, 1.2));
+  const Recorded run = record(settings, motion_of(rest_only(-0.1, 1.2)));
   EXPECT_NEAR(run.samples[1000].w.norm(), kEarthRate, 1e-11);
   EXPECT_NEAR(run.samples[1000].f.norm(), 9.80665, 2e-3);  // gravity is drawn about the site's
 }
@@ -114,7 +114,7 @@ TEST(RunTable, QuantisesToWholeCounts) {
   TableRunSettings settings;
   settings.gyro_quantum = 1e-3;
   settings.accel_quantum = 1e-2;
-  const Recorded run = record(settings, rest_only(-0.1, 1.2));
+  const Recorded run = record(settings, motion_of(rest_only(-0.1, 1.2)));
   for (std::size_t i = 0; i < run.samples.size(); i += 97) {
     const double counts = run.samples[i].w.x() / 1e-3;
     EXPECT_NEAR(counts, std::round(counts), 1e-9);

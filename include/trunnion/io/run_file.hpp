@@ -57,7 +57,8 @@ struct RunFile {
   LcmChannels channels;
   std::vector<std::string> lcm_types;  ///< definitions, files or folders
   ColumnMap columns;
-  PlanRequest plan;  ///< what a live calibration asks of each mount
+  PlanRequest plan;   ///< what a live calibration asks of each mount
+  std::string moves;  ///< of the table, or empty
   std::vector<RecordingFiles> recordings;
 };
 

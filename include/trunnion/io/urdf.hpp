@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "trunnion/positions/table_move.hpp"
 #include "trunnion/turntable/rig.hpp"
 
 namespace trunnion::io {
@@ -15,8 +16,7 @@ namespace trunnion::io {
 struct RigFile {
   Rig rig;                          ///< its mounts in the order of their names
   std::vector<std::string> mounts;  ///< names of the fixed joints that end in the unit's case
-  double pitch_lower = 0.0;         ///< rad; equal to pitch_upper where the joint is continuous
-  double pitch_upper = 0.0;
+  TableLimits limits;               ///< of the two joints; a URDF states no acceleration
 };
 
 /// Reads a rig. Only the mounts in @p wanted are kept, in that order; empty: all of them.

@@ -17,7 +17,7 @@
 
 #include "trunnion/error_model/noise.hpp"
 #include "trunnion/positions/calibration_record.hpp"
-#include "trunnion/simulation/axis_motion.hpp"
+#include "trunnion/simulation/table_sequence.hpp"
 #include "trunnion/turntable/rig.hpp"
 
 namespace trunnion::simulation {
@@ -59,20 +59,6 @@ struct TableRunSettings {
 
 /// Draws a unit, a table and a site's gravity. The first mount is the datum: its error is zero by definition.
 CalibrationValues draw_truth(const TableRunSettings& settings, const Rig& rig, const Site& site, int recordings);
-
-/// The motion of one mount in the experiment: rests at pitch angles over the whole range, then for each of five rates
-/// rest, forward, rest, backward, 30 s each, while pitch swings about its middle. About 705 s.
-struct TableMotion {
-  AxisCourse azimuth;
-  AxisCourse pitch;
-  double duration = 0.0;  ///< s
-};
-
-/// @param lowest, highest limits of the pitch joint [rad]; @param variant changes the order of the swings
-TableMotion experiment(double lowest, double highest, int variant);
-
-/// Rests only, at the middle of the pitch range: a run with too few turns.
-TableMotion rest_only(double lowest, double highest);
 
 struct TableSinks {
   std::function<void(std::int64_t utime, std::int64_t sequence, const InertialSample<double>& sample)> imu;

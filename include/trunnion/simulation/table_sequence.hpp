@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: 2026 the trunnion authors
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Sequences of moves, and the motion of the two axes that they make.
+///
+/// Between two angles an axis moves as axis_motion.hpp says, so that a step d within a transition T asks for
+///
+///   rate (15/8) |d| / T,   acceleration (10/sqrt 3) |d| / T^2;   a change of rate r within T: (15/8) |r| / T    ...
+///   (1)
+
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "trunnion/positions/table_move.hpp"
+#include "trunnion/simulation/axis_motion.hpp"
+
+namespace trunnion::simulation {
+
+using TableSequence = std::vector<TableMove>;
+
+struct TableMotion {
+  AxisCourse azimuth;
+  AxisCourse pitch;
+  double duration = 0.0;  ///< s
+};
+
+/// An axis without end goes the short way round. The first move may be of duration zero: where the table stands.
+TableMotion motion_of(const TableSequence& sequence, const TableLimits& limits = {});
+
+/// @throws Error (input) naming the first move, the axis and the limit that it breaks: angle, rate, acceleration, or a
+/// transition that its duration has no room for. @param name of the sequence, for the message
+void check_limits(const TableSequence& sequence, const TableLimits& limits, const std::string& name);
+
+/// The shortest transition [s] in which an axis takes a step and a change of rate, eq. (1).
+double transition_for(double step, double rate, const AxisLimits& limits);
+
+[[nodiscard]] double duration_of(const TableSequence& sequence);
+
+/// The experiment of the paper, in one mount: rests at pitch angles over the whole range, then for each of five rates
+/// rest, forward, rest, backward, 30 s each, while the pitch swings about its middle. 705 s.
+/// @param lowest, highest limits of the pitch joint [rad]; @param variant changes the order of the swings
+TableSequence experiment(double lowest, double highest, int variant);
+
+/// The design run of the paper, in one mount: 30 s at rest, azimuth at 5 to 25 deg/s both ways, 30 s each, the same of
+/// the pitch as swings of those peak rates where its joint has limits, 30 s at rest.
+TableSequence design_run(const AxisLimits& pitch);
+
+/// Rests only, at the middle of the pitch range: a run with too few turns.
+TableSequence rest_only(double lowest, double highest);
+
+/// Rests of @p dwell [s] between right-angled turns, as system-level calibration takes them: sixteen (eight turns of
+/// each axis) or nineteen positions. They need a pitch without end.
+TableSequence sixteen_positions(double dwell, double rate);
+TableSequence nineteen_positions(double dwell, double rate);
+
+/// Whole turns both ways of both axes between rests: the twelve positions of one mount where no joint ends.
+TableSequence whole_turns(double dwell, double rate);
+
+}  // namespace trunnion::simulation
