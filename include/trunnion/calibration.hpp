@@ -11,5 +11,6 @@
 #include "trunnion/calibration/noise_estimate.hpp"
 #include "trunnion/calibration/observability.hpp"
 #include "trunnion/calibration/parameters.hpp"
+#include "trunnion/calibration/prediction.hpp"
 #include "trunnion/calibration/rests_and_turns.hpp"
 #include "trunnion/calibration/twelve_position_solve.hpp"

@@ -122,7 +122,7 @@ TableProblem::TableProblem(const std::vector<TableRecording>& recordings, const 
                                         " times as fast as the encoders: wrong unit or nominal scale of one of them");
     }
   }
-  priors_.push_back({layout_.gravity, site.gravity, site.gravity_sigma});
+  priors_.push_back(gravity_prior(layout_, site));
   if (running) add_wide_priors();
 }
 
@@ -175,24 +175,42 @@ void TableProblem::add_wide_priors() {
   }
 }
 
-LayoutRequest TableProblem::request() const {
+LayoutRequest layout_request(const TableSolveOptions& options, const Rig& rig, const std::vector<int>& mounts,
+                             double largest_rate) {
   LayoutRequest r;
-  r.terms = options_.terms;
-  r.refuse_above = options_.refuse_above;
-  r.recordings = static_cast<int>(recordings_.size());
-  r.bias_per_recording = options_.bias_per_recording;
-  r.clock_offset = options_.estimate_clock_offset;
-  r.largest_rate = 1e-3;
-  r.mounts = options_.mount_names;
-  for (int m = static_cast<int>(r.mounts.size()); m < rig_.mounts; ++m)
+  r.terms = options.terms;
+  r.refuse_above = options.refuse_above;
+  r.recordings = static_cast<int>(mounts.size());
+  r.bias_per_recording = options.bias_per_recording;
+  r.clock_offset = options.estimate_clock_offset;
+  r.largest_rate = largest_rate;
+  r.mounts = options.mount_names;
+  for (int m = static_cast<int>(r.mounts.size()); m < rig.mounts; ++m)
     r.mounts.push_back("mount_" + std::to_string(m + 1));
   r.mount_used.assign(r.mounts.size(), false);
-  for (const TableRecording& recording : recordings_) {
-    r.mount_used[static_cast<std::size_t>(recording.mount)] = true;
-    for (const ObservationWindow& window : recording.data.windows)
-      r.largest_rate = std::max(r.largest_rate, window.mean.w.cwiseAbs().maxCoeff());
-  }
+  for (const int mount : mounts) r.mount_used[static_cast<std::size_t>(mount)] = true;
   return r;
+}
+
+Prior gravity_prior(const Layout& layout, const Site& site) {
+  return {layout.gravity, site.gravity, site.gravity_sigma};
+}
+
+void add_prior_information(const Layout& layout, const std::vector<Prior>& priors, Eigen::MatrixXd& information) {
+  for (const Prior& prior : priors) information(prior.index, prior.index) += 1.0 / (prior.sigma * prior.sigma);
+  const double circle = layout.parameters[static_cast<std::size_t>(layout.heading)].scale;
+  information(layout.heading, layout.heading) += 1.0 / (circle * circle);
+}
+
+LayoutRequest TableProblem::request() const {
+  std::vector<int> mounts;
+  double largest_rate = 1e-3;
+  for (const TableRecording& recording : recordings_) {
+    mounts.push_back(recording.mount);
+    for (const ObservationWindow& window : recording.data.windows)
+      largest_rate = std::max(largest_rate, window.mean.w.cwiseAbs().maxCoeff());
+  }
+  return layout_request(options_, rig_, mounts, largest_rate);
 }
 
 std::string TableProblem::span(const TableRecording& recording) {
@@ -381,9 +399,7 @@ Solution TableProblem::conclude(const UnitNoise& noise, int iterations) {
     if (chi_square > worst.chi_square) worst = {chi_square, recordings_[model->index()].data.name};
   }
   const double freedom = std::max(1.0, rows - n);
-  for (const Prior& prior : priors_) information(prior.index, prior.index) += 1.0 / (prior.sigma * prior.sigma);
-  // a heading may be anything: its flat prior is knowledge enough, it is nobody's calibration
-  information(layout_.heading, layout_.heading) += 1.0 / (scale(layout_.heading) * scale(layout_.heading));
+  add_prior_information(layout_, priors_, information);
 
   Solution solution;
   solution.parameters = layout_.parameters;

@@ -23,6 +23,16 @@ struct Prior {
   double sigma;
 };
 
+/// @param mounts of the recordings, indices into Rig::mount. @param largest_rate rad/s, of the data
+LayoutRequest layout_request(const TableSolveOptions& options, const Rig& rig, const std::vector<int>& mounts,
+                             double largest_rate);
+
+Prior gravity_prior(const Layout& layout, const Site& site);
+
+/// What is known before: the priors, and that a heading is on the circle. It may be anything there, and is nobody's
+/// calibration: its flat prior is knowledge enough.
+void add_prior_information(const Layout& layout, const std::vector<Prior>& priors, Eigen::MatrixXd& information);
+
 class TableProblem {
  public:
   /// @param running for data that are not all there yet: every unknown has a prior as wide as an instrument can be

@@ -53,6 +53,9 @@ inline constexpr std::array<EntryKind, kEntries> kEntryKinds = {{
     {"clock_offset_ms", "ms", 1e-3, 5.0, 1e3},
 }};
 
+/// Of the unit; the others are of the rig.
+constexpr bool is_of_unit(Entry entry) { return entry < Entry::kRigAngle; }
+
 constexpr const EntryKind& kind_of(Entry entry) { return kEntryKinds[static_cast<std::size_t>(entry)]; }
 
 /// Limits, one a kind, each in the unit of its key.
