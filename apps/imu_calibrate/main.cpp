@@ -19,6 +19,7 @@ ExitCode run_command(std::vector<std::string> arguments) {
       "Example:\n  imu_calibrate demo -o trunnion-demo\n\nExit codes: 0 done, within limits; 1 done, out of limits; 2 "
       "usage; 3 input; 4 numerics; 70 defect.");
   ExitCode exit_code = ExitCode::kDone;
+  add_plan(app, exit_code);
   add_simulate(app, exit_code);
   add_inspect(app, exit_code);
   add_solve(app, exit_code);
