@@ -96,22 +96,8 @@ long long apply_to_table(const Options& o, const io::RunFile& run, const io::Rec
 }
 
 void apply(const Options& o) {
-  io::RunFile run;
-  io::RecordingFiles files;
-  if (is_run_file(o.input)) {
-    run = io::read_run_file(o.input);
-    const int recordings = static_cast<int>(run.recordings.size());
-    if (o.of_run > recordings || (o.of_run == 0 && recordings > 1))
-      throw Error(ExitCode::kUsage,
-                  o.input + ": has " + std::to_string(recordings) + " recordings: choose one with --of-run");
-    if (!o.channel.empty()) throw Error(ExitCode::kUsage, "--channel: the run file names its channels");
-    files = run.recordings[static_cast<std::size_t>(std::max(1, o.of_run) - 1)];
-    files.encoder.clear();
-  } else {
-    if (o.of_run > 0) throw Error(ExitCode::kUsage, "--of-run: " + o.input + " is no run file");
-    if (!o.channel.empty()) run.channels.imu.name = o.channel;
-    (is_table(o.input) ? files.imu : files.lcm) = o.input;
-  }
+  auto [run, files] = one_recording(o.input, o.channel, o.of_run);
+  files.encoder.clear();
   const bool table = files.lcm.empty();
   if (table != is_table(o.output))
     throw Error(ExitCode::kUsage,

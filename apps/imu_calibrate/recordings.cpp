@@ -113,6 +113,24 @@ void keep_inputs(const std::string& output, const std::vector<std::string>& inpu
   }
 }
 
+OneRecording one_recording(const std::string& input, const std::string& channel, int of_run) {
+  OneRecording one;
+  if (is_run_file(input)) {
+    one.run = io::read_run_file(input);
+    const int recordings = static_cast<int>(one.run.recordings.size());
+    if (of_run > recordings || (of_run == 0 && recordings > 1))
+      throw Error(ExitCode::kUsage,
+                  input + ": has " + std::to_string(recordings) + " recordings: choose one with --of-run");
+    if (!channel.empty()) throw Error(ExitCode::kUsage, "--channel: the run file names its channels");
+    one.files = one.run.recordings[static_cast<std::size_t>(std::max(1, of_run) - 1)];
+  } else {
+    if (of_run > 0) throw Error(ExitCode::kUsage, "--of-run: " + input + " is no run file");
+    if (!channel.empty()) one.run.channels.imu.name = channel;
+    (is_table(input) ? one.files.imu : one.files.lcm) = input;
+  }
+  return one;
+}
+
 calibration::CompressOptions compress_options(const io::RunFile& run, const io::RecordingFiles& files) {
   calibration::CompressOptions options;
   options.name = files.name();

@@ -31,6 +31,16 @@ std::vector<std::string> files_of(const io::RunFile& run);
 /// Refuses (usage) an output that is one of the inputs: they are raw data.
 void keep_inputs(const std::string& output, const std::vector<std::string>& inputs);
 
+/// A recording that is named on the command line.
+struct OneRecording {
+  io::RunFile run;  ///< defaults where the input is no run file
+  io::RecordingFiles files;
+};
+
+/// @param input LCM log, table, or a run file, of which @p of_run is the recording, from 1 (0: the only one).
+/// @param channel of the log; empty: the default. @throws Error (usage, input)
+OneRecording one_recording(const std::string& input, const std::string& channel, int of_run);
+
 /// How a recording of the run is compressed, whether it is read or comes live.
 calibration::CompressOptions compress_options(const io::RunFile& run, const io::RecordingFiles& files);
 

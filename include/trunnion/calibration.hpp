@@ -5,6 +5,7 @@
 
 #pragma once
 
+#include "trunnion/calibration/allan_deviation.hpp"
 #include "trunnion/calibration/compress.hpp"
 #include "trunnion/calibration/encoder_course.hpp"
 #include "trunnion/calibration/multi_position_solve.hpp"

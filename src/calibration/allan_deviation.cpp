@@ -1,0 +1,209 @@
+// SPDX-FileCopyrightText: 2026 the trunnion authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "trunnion/calibration/allan_deviation.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <thread>
+
+#include "trunnion/core/chi_square.hpp"
+#include "trunnion/core/units.hpp"
+
+namespace trunnion::calibration {
+namespace {
+
+constexpr std::size_t kBlock = 1024;          // stays in the nearest cache while all taus look at it
+constexpr std::size_t kChunk = 128 * kBlock;  // of one thread, with sums of its own: their order is always the same
+
+/// sum (a_k - 2 b_k + c_k)^2. Eight sums at a time: no adding waits for the one before.
+double squares(const double* a, const double* b, const double* c, std::size_t count) {
+  constexpr std::size_t kLanes = 8;
+  std::array<double, kLanes> sum{};
+  std::size_t k = 0;
+  for (; k + kLanes <= count; k += kLanes) {
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      const double d = (a[k + i] - b[k + i]) - (b[k + i] - c[k + i]);
+      sum[i] += d * d;
+    }
+  }
+  double rest = 0.0;
+  for (; k < count; ++k) {
+    const double d = (a[k] - b[k]) - (b[k] - c[k]);
+    rest += d * d;
+  }
+  for (const double one : sum) rest += one;
+  return rest;
+}
+
+/// Sums for every m that begin in one chunk of x.
+void add_chunk(const std::vector<double>& x, const std::vector<std::size_t>& m, std::size_t chunk,
+               std::vector<double>& sum) {
+  const std::size_t n = x.size();
+  const std::size_t end = std::min(n, (chunk + 1) * kChunk);
+  for (std::size_t from = chunk * kChunk; from < end; from += kBlock) {
+    for (std::size_t j = 0; j < m.size() && from + 2 * m[j] < n; ++j) {
+      const double* const first = x.data() + from;
+      sum[j] += squares(first + 2 * m[j], first + m[j], first, std::min(kBlock, n - 2 * m[j] - from));
+    }
+  }
+}
+
+/// Degrees of freedom of eq. (1) from n points of x, by the noise that the slope of log sigma against log tau shows.
+/// NIST SP 1065, table 5.
+double degrees_of_freedom(double slope, double n, double m) {
+  const double white_phase = (n + 1.0) * (n - 2.0 * m) / (2.0 * (n - m));
+  const double white = (3.0 * (n - 1.0) / (2.0 * m) - 2.0 * (n - 2.0) / n) * 4.0 * m * m / (4.0 * m * m + 5.0);
+  const double flicker =
+      m == 1.0 ? 2.0 * (n - 2.0) / (2.3 * n - 4.9) * (n - 2.0) : 5.0 * n * n / (4.0 * m * (n + 3.0 * m));
+  const double walk =
+      (n - 2.0) / m * ((n - 1.0) * (n - 1.0) - 3.0 * m * (n - 1.0) + 4.0 * m * m) / ((n - 3.0) * (n - 3.0));
+  const double freedom = slope < -0.75 ? white_phase : slope < -0.25 ? white : slope < 0.25 ? flicker : walk;
+  return std::max(freedom, 1.0);
+}
+
+/// min || W (A c - b) ||, c >= 0, by trying every set of terms: there are five at most.
+template <int Terms>
+Eigen::Matrix<double, Terms, 1> non_negative_fit(const Eigen::Matrix<double, Eigen::Dynamic, Terms>& A,
+                                                 const Eigen::VectorXd& b, double& misfit) {
+  using Vector = Eigen::Matrix<double, Terms, 1>;
+  Vector best = Vector::Zero();
+  misfit = b.squaredNorm();
+  for (unsigned set = 1; set < (1U << Terms); ++set) {
+    std::array<Eigen::Index, static_cast<std::size_t>(Terms)> column{};
+    Eigen::Index count = 0;
+    for (int i = 0; i < Terms; ++i) {
+      if (((set >> i) & 1U) != 0) column[static_cast<std::size_t>(count++)] = i;
+    }
+    if (count > A.rows()) continue;
+    Eigen::MatrixXd part(A.rows(), count);
+    Eigen::VectorXd scale(count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      part.col(i) = A.col(column[static_cast<std::size_t>(i)]);
+      scale(i) = part.col(i).norm();
+      part.col(i) /= scale(i);
+    }
+    const Eigen::VectorXd c = (part.transpose() * part).ldlt().solve(part.transpose() * b);
+    if (!c.allFinite() || (c.array() < 0.0).any()) continue;
+    const double error = (part * c - b).squaredNorm();
+    if (!(error < misfit)) continue;
+    misfit = error;
+    best.setZero();
+    for (Eigen::Index i = 0; i < count; ++i) best(column[static_cast<std::size_t>(i)]) = c(i) / scale(i);
+  }
+  return best;
+}
+
+/// One over 1 sigma of a point's variance.
+double weight_of(const AllanPoint& point) {
+  return std::sqrt(0.5 * point.freedom) / std::max(point.deviation * point.deviation, 1e-300);
+}
+
+double wander_shape(double tau, double T) {
+  const double u = tau / T;
+  // the bracket of eq. (3) is u^2 / 3 - ... for short taus, where it cancels
+  const double bracket =
+      u < 1e-3 ? u * u / 3.0 * (1.0 - 0.75 * u) : 1.0 - (3.0 - 4.0 * std::exp(-u) + std::exp(-2.0 * u)) / (2.0 * u);
+  return 2.0 * T / tau * bracket;
+}
+
+}  // namespace
+
+std::vector<AllanPoint> allan_deviation(std::vector<double> readings, double period) {
+  double mean = 0.0;
+  for (const double reading : readings) mean += reading;
+  mean /= static_cast<double>(readings.size());
+  // x from x_1 on: x_0 is zero
+  std::vector<double>& x = readings;
+  double integral = 0.0;
+  for (double& reading : readings) reading = integral += reading - mean;
+
+  const std::size_t n = readings.size() + 1;
+  std::vector<std::size_t> m;
+  for (std::size_t step = 1; 2 * step < n; step *= 2) m.push_back(step);
+  const std::size_t chunks = (x.size() + kChunk - 1) / kChunk;
+  std::vector<std::vector<double>> part(chunks, std::vector<double>(m.size(), 0.0));
+  std::atomic<std::size_t> next{0};
+  const auto work = [&] {
+    for (std::size_t chunk = next++; chunk < chunks; chunk = next++) add_chunk(x, m, chunk, part[chunk]);
+  };
+  std::vector<std::thread> threads;
+  for (std::size_t t = 1; t < std::min<std::size_t>(chunks, std::max(1U, std::thread::hardware_concurrency())); ++t)
+    threads.emplace_back(work);
+  work();
+  for (std::thread& thread : threads) thread.join();
+  std::vector<double> sum(m.size());
+  for (std::size_t j = 0; j < m.size(); ++j) {
+    const double first = x[2 * m[j] - 1] - 2.0 * x[m[j] - 1];
+    sum[j] = first * first;
+    for (const std::vector<double>& one : part) sum[j] += one[j];
+  }
+
+  std::vector<AllanPoint> curve(m.size());
+  for (std::size_t j = 0; j < m.size(); ++j) {
+    const auto step = static_cast<double>(m[j]);
+    // x is in readings, not in their integral: a period is left out on both sides
+    curve[j].tau = step * period;
+    curve[j].deviation = std::sqrt(sum[j] / (2.0 * static_cast<double>(n - 2 * m[j]))) / step;
+  }
+  for (std::size_t j = 0; j < m.size(); ++j) {
+    AllanPoint& point = curve[j];
+    const std::size_t a = j == 0 ? 0 : j - 1;
+    const std::size_t b = std::min(j + 1, m.size() - 1);
+    const double slope = b > a && curve[a].deviation > 0.0 && curve[b].deviation > 0.0
+                             ? std::log(curve[b].deviation / curve[a].deviation) / std::log(curve[b].tau / curve[a].tau)
+                             : -0.5;
+    point.freedom = degrees_of_freedom(slope, static_cast<double>(n), static_cast<double>(m[j]));
+    const double high = chi_square_quantile(point.freedom, 1.0);
+    const double low = std::max(chi_square_quantile(point.freedom, -1.0), 1e-3 * point.freedom);
+    point.low = point.deviation * std::sqrt(point.freedom / high);
+    point.high = point.deviation * std::sqrt(point.freedom / low);
+  }
+  return curve;
+}
+
+NoiseTerms fit_noise_terms(const std::vector<AllanPoint>& curve) {
+  const auto rows = static_cast<Eigen::Index>(curve.size());
+  Eigen::Matrix<double, Eigen::Dynamic, 5> A(rows, 5);
+  Eigen::VectorXd b(rows);
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    const AllanPoint& point = curve[static_cast<std::size_t>(i)];
+    const double tau = point.tau;
+    A.row(i) << 3.0 / (tau * tau), 1.0 / tau, 2.0 * std::log(2.0) / kPi, tau / 3.0, tau * tau / 2.0;
+    A.row(i) *= weight_of(point);
+    b(i) = point.deviation * point.deviation * weight_of(point);
+  }
+  double misfit = 0.0;
+  const Eigen::Matrix<double, 5, 1> c = non_negative_fit<5>(A, b, misfit).cwiseSqrt();
+  return {c(0), c(1), c(2), c(3), c(4)};
+}
+
+TriadNoise fit_sheet_noise(const std::vector<AllanPoint>& curve) {
+  const auto rows = static_cast<Eigen::Index>(curve.size());
+  TriadNoise best;
+  double least = std::numeric_limits<double>::infinity();
+  constexpr double kStep = 1.05;
+  for (double T = 2.0 * curve.front().tau; T <= curve.back().tau; T *= kStep) {
+    Eigen::Matrix<double, Eigen::Dynamic, 2> A(rows, 2);
+    Eigen::VectorXd b(rows);
+    for (Eigen::Index i = 0; i < rows; ++i) {
+      const AllanPoint& point = curve[static_cast<std::size_t>(i)];
+      A.row(i) << 1.0 / point.tau, wander_shape(point.tau, T);
+      A.row(i) *= weight_of(point);
+      b(i) = point.deviation * point.deviation * weight_of(point);
+    }
+    double misfit = 0.0;
+    const Eigen::Vector2d c = non_negative_fit<2>(A, b, misfit);
+    if (!(misfit < least)) continue;
+    least = misfit;
+    best = {std::sqrt(c(0)), std::sqrt(c(1)), c(1) > 0.0 ? T : 1.0};
+  }
+  return best;
+}
+
+}  // namespace trunnion::calibration
