@@ -167,9 +167,15 @@ TableSequence design_run(const AxisLimits& pitch) {
   constexpr double kHold = 30.0;
   constexpr double kRamp = 2.0;
   const double middle = pitch.endless() ? 0.0 : 0.5 * (pitch.lowest + pitch.highest);
-  TableSequence moves = {{0.0, kRamp, {stand(0.0), stand(middle)}}, {kHold, kRamp, {stand(0.0), stand(middle)}}};
-  std::array<double, 2> angle = {0.0, middle};
+  // level, so that the azimuth's axis lies along one of the case
+  const double level = std::clamp(0.0, pitch.lowest, pitch.highest);
+  TableSequence moves = {{0.0, kRamp, {stand(0.0), stand(level)}}, {kHold, kRamp, {stand(0.0), stand(level)}}};
+  std::array<double, 2> angle = {0.0, level};
   for (const std::size_t axis : {std::size_t{kAzimuth}, std::size_t{kPitch}}) {
+    if (axis == kPitch) {
+      angle[kPitch] = middle;
+      moves.push_back({kHold, 3.0, {stand(angle[kAzimuth]), stand(middle)}});
+    }
     for (int step = 0; step < 10; ++step) {
       const double rate = (step % 2 == 0 ? 5.0 : -5.0) * (step / 2 + 1) * kRadPerDeg;
       TableMove move{kHold, kRamp, {stand(angle[kAzimuth]), stand(angle[kPitch])}};
@@ -251,25 +257,20 @@ TableSequence nineteen_positions(double dwell, double rate) {
 }
 
 TableSequence whole_turns(double dwell, double rate) {
+  constexpr double kRamp = 4.0;
+  const double time = time_for(2.0 * kPi, rate, kRamp);
+  const double transition = kPeakRate * 0.5 * kPi / rate;
   TableSequence moves = {{0.0, 1.0, {stand(0.0), stand(0.0)}}};
-  constexpr double kTransition = 4.0;
-  const double time = time_for(2.0 * kPi, rate, kTransition);
-  const auto at = [&](double azimuth, double pitch) {
-    moves.push_back({dwell, kTransition, {stand(azimuth), stand(pitch)}});
-  };
-  for (const double pitch : {0.0, 0.5 * kPi, kPi, 1.5 * kPi}) {
-    at(0.0, pitch);
-    moves.push_back({time, kTransition, {turn(0.0, rate), stand(pitch)}});
-    at(0.0, pitch);
-    moves.push_back({time, kTransition, {turn(0.0, -rate), stand(pitch)}});
+  for (int position = 0; position < 12; ++position) {
+    const double outer = 0.5 * kPi * (position % 4);
+    const double inner = 0.5 * kPi * (position / 4);
+    moves.push_back({position == 0 ? dwell : dwell + transition, transition, {stand(outer), stand(inner)}});
+    const double direction = position % 4 < 2 ? 1.0 : -1.0;
+    TableMove whole{time, kRamp, {stand(outer), stand(inner)}};
+    whole.axis[static_cast<std::size_t>(position % 2)].rate = direction * rate;
+    moves.push_back(whole);
   }
-  for (const double azimuth : {0.0, 0.5 * kPi}) {
-    at(azimuth, 0.0);
-    moves.push_back({time, kTransition, {stand(azimuth), turn(0.0, rate)}});
-    at(azimuth, 0.0);
-    moves.push_back({time, kTransition, {stand(azimuth), turn(0.0, -rate)}});
-  }
-  at(0.5 * kPi, 0.0);
+  moves.push_back({dwell, kRamp, {stand(1.5 * kPi), stand(kPi)}});
   return moves;
 }
 

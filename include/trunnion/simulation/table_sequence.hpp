@@ -55,7 +55,7 @@ TableSequence rest_only(double lowest, double highest);
 TableSequence sixteen_positions(double dwell, double rate);
 TableSequence nineteen_positions(double dwell, double rate);
 
-/// Whole turns both ways of both axes between rests: the twelve positions of one mount where no joint ends.
+/// Twelve right-angled positions, each with a whole turn of one axis, both ways in turn. For joints without end.
 TableSequence whole_turns(double dwell, double rate);
 
 }  // namespace trunnion::simulation
