@@ -27,6 +27,7 @@ constexpr double kAlignment = 10.0;            // s
 constexpr double kStep = 0.1;                  // s, of the filter
 constexpr double kRestVelocity = 1e-4;         // m/s, 1 sigma
 constexpr double kHidden = 0.3;                // of the Earth's rate: gyros at rest that differ from it by more
+constexpr double kKnownHeading = 0.05;  // rad
 constexpr int kFewestRests = 6;
 
 enum Place : int {
@@ -60,8 +61,8 @@ struct Data {
 class Pass {
  public:
   Pass(const Data& data, const Site& site, const Kalman36Options& options, const InertialUnit<double>& unit,
-       const std::array<Vec3<double>, 2>& lever)
-      : data_(data), site_(site), noise_(options.noise), correction_(unit), lever_(lever) {}
+       const std::array<Vec3<double>, 2>& lever, double heading)
+      : data_(data), site_(site), noise_(options.noise), correction_(unit), lever_(lever), heading_(heading) {}
 
   void run() {
     corrected();
@@ -144,6 +145,7 @@ class Pass {
     } else {
       q_nb_ = Quaternion<double>::FromTwoVectors(mean.f, Vec3<double>(0.0, 0.0, -1.0));
     }
+    q_nb_ = quaternion_exp<double>(Vec3<double>(0.0, 0.0, heading_)) * q_nb_;
     return count;
   }
 
@@ -232,6 +234,7 @@ class Pass {
   Quaternion<double> q_nb_;
   Vec3<double> v_ = Vec3<double>::Zero();
   Vec3<double> w_ie_n_;
+  double heading_;  // what earlier passes have added to the alignment's [rad]
   double heading_sigma_ = 1.0;
   State x_;
   Covariance P_;
@@ -293,8 +296,9 @@ Kalman36Result Kalman36::finish(const Site& site, const Kalman36Options& options
   Vec3<double> at_rest = Vec3<double>::Zero();
   for (std::size_t k = 0; k < first; ++k) at_rest += samples_[k].w / static_cast<double>(first);
   if (std::abs(at_rest.norm() - kEarthRate) > kHidden * kEarthRate) result.unit.gyro.bias = at_rest;
+  double heading = 0.0;
   for (result.rounds = 1; result.rounds <= options.most_rounds; ++result.rounds) {
-    Pass pass(data, site, options, result.unit, result.lever);
+    Pass pass(data, site, options, result.unit, result.lever, heading);
     pass.run();
     const State& x = pass.state();
     result.sigma = pass.covariance().diagonal().tail<kStates - 6>().cwiseMax(0.0).cwiseSqrt();
@@ -311,10 +315,13 @@ Kalman36Result Kalman36::finish(const Site& site, const Kalman36Options& options
     unit.gyro.M = (unit.gyro.matrix() * (Mat3<double>::Identity() + dG)) - Mat3<double>::Identity();
     unit.accel.M = (unit.accel.matrix() * (Mat3<double>::Identity() + dA)) - Mat3<double>::Identity();
     unit.accel.quadratic += x.segment<3>(kQuadratic);
+    // one that the Earth's rate does not tell is left alone: it would only creep
+    if (pass.covariance()(kPhi + 2, kPhi + 2) < kKnownHeading * kKnownHeading) heading += x(kPhi + 2);
     result.lever[0] += x.segment<3>(kLeverY);
     result.lever[1] += x.segment<3>(kLeverZ);
     const double change = x.tail<kStates - 6>().cwiseAbs().cwiseQuotient(result.sigma.cwiseMax(1e-300)).maxCoeff();
-    if (change < options.converged) return result;
+    // what the model does not have, a force that a gyro feels, can keep it moving: within a sigma that is no matter
+    if (change < options.converged || (result.rounds == options.most_rounds && change < 1.0)) return result;
   }
   throw Error(ExitCode::kNumerics,
               name_ + ": the system-level filter did not settle in " + std::to_string(options.most_rounds) + " rounds");

@@ -116,9 +116,9 @@ RunFile read_run_file(const std::string& path) {
   const StrictYaml site = root.at("site");
   site.only({"latitude_deg", "height_m", "gravity_m_s2", "gravity_sigma_m_s2"});
   run.site.latitude = site.at("latitude_deg").number_in(-90.0, 90.0) * kRadPerDeg;
-  const double height = site.has("height_m") ? site.at("height_m").number_in(-500.0, 10000.0) : 0.0;
+  if (site.has("height_m")) run.height = site.at("height_m").number_in(-500.0, 10000.0);
   run.site.gravity = site.has("gravity_m_s2") ? site.at("gravity_m_s2").number_in(9.7, 9.9)
-                                              : normal_gravity(run.site.latitude, height);
+                                              : normal_gravity(run.site.latitude, run.height);
   if (site.has("gravity_sigma_m_s2")) run.site.gravity_sigma = site.at("gravity_sigma_m_s2").positive();
 
   if (root.has("rig")) run.rig = beside(path, root.at("rig").text());

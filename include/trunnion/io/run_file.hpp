@@ -40,6 +40,7 @@ struct EntryVerdict {
 struct RunFile {
   std::string path;
   Site site;
+  double height = 0.0;  ///< of the site [m]
   std::string rig;  ///< URDF, or empty: by hand
   std::string outer_axis = "azimuth";
   std::string inner_axis = "pitch";
