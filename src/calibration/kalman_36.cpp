@@ -27,7 +27,7 @@ constexpr double kAlignment = 10.0;            // s
 constexpr double kStep = 0.1;                  // s, of the filter
 constexpr double kRestVelocity = 1e-4;         // m/s, 1 sigma
 constexpr double kHidden = 0.3;                // of the Earth's rate: gyros at rest that differ from it by more
-constexpr double kKnownHeading = 0.05;  // rad
+constexpr double kLevelling = 2.0;             // s
 constexpr int kFewestRests = 6;
 
 enum Place : int {
@@ -61,8 +61,8 @@ struct Data {
 class Pass {
  public:
   Pass(const Data& data, const Site& site, const Kalman36Options& options, const InertialUnit<double>& unit,
-       const std::array<Vec3<double>, 2>& lever, double heading)
-      : data_(data), site_(site), noise_(options.noise), correction_(unit), lever_(lever), heading_(heading) {}
+       const std::array<Vec3<double>, 2>& lever)
+      : data_(data), site_(site), noise_(options.noise), correction_(unit), lever_(lever) {}
 
   void run() {
     corrected();
@@ -85,6 +85,7 @@ class Pass {
 
     const auto updates = static_cast<std::size_t>(std::max(1.0, std::round(kStep / (2.0 * data_.period))));
     std::size_t k = start;
+    bool was_still = true;
     while (k + 2 * updates <= sample_.size()) {
       Rows on_phi = Rows::Zero();
       Rows on_velocity = Rows::Zero();
@@ -95,6 +96,8 @@ class Pass {
         advance(k, on_phi, on_velocity, push);
       }
       predict(static_cast<double>(2 * updates) * data_.period, on_phi, on_velocity, push);
+      if (still && !was_still) level(k);
+      was_still = still;
       if (still) at_rest();
     }
   }
@@ -145,7 +148,6 @@ class Pass {
     } else {
       q_nb_ = Quaternion<double>::FromTwoVectors(mean.f, Vec3<double>(0.0, 0.0, -1.0));
     }
-    q_nb_ = quaternion_exp<double>(Vec3<double>(0.0, 0.0, heading_)) * q_nb_;
     return count;
   }
 
@@ -206,6 +208,18 @@ class Pass {
     add(kAccelBias, 2.0 * noise_.accel.wander * noise_.accel.wander / noise_.accel.wander_correlation_time * t);
   }
 
+  /// Levels the frame anew by the force at rest from sample @p k on. It is the reference that moves, by a known angle:
+  /// nothing is learnt, but the tilt that gyros gather in a thousand seconds stays small.
+  void level(std::size_t k) {
+    const std::size_t end = std::min(sample_.size(), k + static_cast<std::size_t>(kLevelling / data_.period));
+    Vec3<double> f = Vec3<double>::Zero();
+    for (; k < end && data_.still[k]; ++k) f += sample_[k].f;
+    if (f.isZero(0.0)) return;
+    const Vec3<double> tilt = (q_nb_ * f.normalized()).cross(Vec3<double>(0.0, 0.0, -1.0));
+    q_nb_ = (quaternion_exp<double>(tilt) * q_nb_).normalized();
+    x_.segment<3>(kPhi) -= tilt;
+  }
+
   /// The velocity that is there is an error, which is taken out at once.
   void at_rest() {
     const Mat3<double> S =
@@ -218,8 +232,8 @@ class Pass {
     P_ = kept * P_ * kept.transpose() + kRestVelocity * kRestVelocity * K * K.transpose();
     P_ = 0.5 * (P_ + P_.transpose()).eval();
     v_ -= x_.segment<3>(kVelocity);
-    // The attitude keeps its error as a state: what it is thought to be wanders as wide as the priors while little is
-    // known, and fed back would turn the frame of all the rest, to second order in that.
+    // the attitude keeps its error as a state: what it is thought to be wanders while little is known, and fed back
+    // would turn the frame of all the rest
     x_.segment<3>(kVelocity).setZero();
   }
 
@@ -234,7 +248,6 @@ class Pass {
   Quaternion<double> q_nb_;
   Vec3<double> v_ = Vec3<double>::Zero();
   Vec3<double> w_ie_n_;
-  double heading_;  // what earlier passes have added to the alignment's [rad]
   double heading_sigma_ = 1.0;
   State x_;
   Covariance P_;
@@ -296,9 +309,8 @@ Kalman36Result Kalman36::finish(const Site& site, const Kalman36Options& options
   Vec3<double> at_rest = Vec3<double>::Zero();
   for (std::size_t k = 0; k < first; ++k) at_rest += samples_[k].w / static_cast<double>(first);
   if (std::abs(at_rest.norm() - kEarthRate) > kHidden * kEarthRate) result.unit.gyro.bias = at_rest;
-  double heading = 0.0;
   for (result.rounds = 1; result.rounds <= options.most_rounds; ++result.rounds) {
-    Pass pass(data, site, options, result.unit, result.lever, heading);
+    Pass pass(data, site, options, result.unit, result.lever);
     pass.run();
     const State& x = pass.state();
     result.sigma = pass.covariance().diagonal().tail<kStates - 6>().cwiseMax(0.0).cwiseSqrt();
@@ -315,13 +327,10 @@ Kalman36Result Kalman36::finish(const Site& site, const Kalman36Options& options
     unit.gyro.M = (unit.gyro.matrix() * (Mat3<double>::Identity() + dG)) - Mat3<double>::Identity();
     unit.accel.M = (unit.accel.matrix() * (Mat3<double>::Identity() + dA)) - Mat3<double>::Identity();
     unit.accel.quadratic += x.segment<3>(kQuadratic);
-    // one that the Earth's rate does not tell is left alone: it would only creep
-    if (pass.covariance()(kPhi + 2, kPhi + 2) < kKnownHeading * kKnownHeading) heading += x(kPhi + 2);
     result.lever[0] += x.segment<3>(kLeverY);
     result.lever[1] += x.segment<3>(kLeverZ);
     const double change = x.tail<kStates - 6>().cwiseAbs().cwiseQuotient(result.sigma.cwiseMax(1e-300)).maxCoeff();
-    // what the model does not have, a force that a gyro feels, can keep it moving: within a sigma that is no matter
-    if (change < options.converged || (result.rounds == options.most_rounds && change < 1.0)) return result;
+    if (change < options.converged) return result;
   }
   throw Error(ExitCode::kNumerics,
               name_ + ": the system-level filter did not settle in " + std::to_string(options.most_rounds) + " rounds");

@@ -301,6 +301,8 @@ Trial run_trial(const TrialSettings& s, const std::vector<Method>& methods, std:
       const CalibrationValues unit = feed(s, run, sequence, filter);
       calibration::Kalman36Options options;
       options.noise = run.noise;
+      // to its gyros, forces that they feel are a bias that moves with every turn: told so, it does better
+      options.noise.gyro.wander = std::hypot(run.noise.gyro.wander, run.gyro_g_sensitivity * kStandardGravity);
       Outcome outcome;
       outcome.seconds = simulation::duration_of(sequence);
       score_aligned(filter.finish(s.site, options).unit, unit.unit, outcome);

@@ -31,7 +31,7 @@ namespace trunnion::calibration {
 struct Kalman36Options {
   UnitNoise noise;
   int most_rounds = 12;
-  double converged = 1e-3;  ///< of a sigma: the largest change of a round; of the last one a whole sigma will do
+  double converged = 1e-3;  ///< of a sigma: the largest change of a round
 };
 
 struct Kalman36Result {
