@@ -26,6 +26,7 @@ ExitCode run_command(std::vector<std::string> arguments) {
   add_apply(app, exit_code);
   add_export(app, exit_code);
   add_compare(app, exit_code);
+  add_verify(app, exit_code);
   add_allan(app, exit_code);
   add_trials(app, exit_code);
   add_demo(app, exit_code);

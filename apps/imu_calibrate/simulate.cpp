@@ -23,6 +23,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::uint64_t kSeedOfRepeat = 1000000007;  // of the noise
+
 struct Options {
   std::string run;
   std::string output;
@@ -35,6 +37,7 @@ struct Options {
   double outliers_percent = 0.0;
   double dropped_percent = 0.0;
   int batch = 1;
+  int repeat = 0;
   bool noise_free = false;
   bool rest_only = false;
   bool no_sheet = false;
@@ -149,6 +152,19 @@ Bench bench_of_run(const std::string& path, std::string& text) {
   return bench;
 }
 
+/// The turn-on biases of the run that is repeated for the @p repeat -th time; unit and table are as they were.
+CalibrationValues repeated(CalibrationValues truth, int recordings, int repeat) {
+  truth.unit.gyro.bias.setZero();
+  truth.unit.accel.bias.setZero();
+  for (int r = 0; r < recordings; ++r) {
+    const InertialSample<double> bias = truth.recording_bias[static_cast<std::size_t>(r + repeat * recordings)];
+    truth.recording_bias[static_cast<std::size_t>(r)] = bias;
+    truth.unit.gyro.bias += bias.w / recordings;
+    truth.unit.accel.bias += bias.f / recordings;
+  }
+  return truth;
+}
+
 void simulate(const Options& o) {
   std::string run;
   const Bench bench = o.run.empty() ? bench_of_options(o, run) : bench_of_run(o.run, run);
@@ -160,7 +176,12 @@ void simulate(const Options& o) {
   settings.dropped_fraction = 0.01 * o.dropped_percent;
   if (o.noise_free) settings = settings.noise_free();
   const auto recordings = static_cast<int>(bench.logs.size());
-  const CalibrationValues truth = simulation::draw_truth(settings, bench.rig.rig, bench.site, recordings);
+  if (recordings * (o.repeat + 1) > kMaxRecordings)
+    throw Error(ExitCode::kUsage, "--repeat " + std::to_string(o.repeat) + ": the unit is powered on for " +
+                                      std::to_string(kMaxRecordings) + " recordings at most");
+  const CalibrationValues truth = repeated(
+      simulation::draw_truth(settings, bench.rig.rig, bench.site, recordings * (o.repeat + 1)), recordings, o.repeat);
+  settings.seed += kSeedOfRepeat * static_cast<std::uint64_t>(o.repeat);
 
   std::error_code error;
   fs::create_directories(o.output, error);
@@ -243,6 +264,11 @@ void add_simulate(CLI::App& app, ExitCode& exit_code) {
   command->add_option("--batch", o->batch, "Samples a message: imu_t, or imu_batch_t")
       ->capture_default_str()
       ->check(CLI::Range(1, 1000));
+  command
+      ->add_option("--repeat", o->repeat,
+                   "The run again, for the n-th time: the same unit and table, other turn-on biases and noise")
+      ->capture_default_str()
+      ->check(CLI::Range(0, kMaxRecordings));
   command->add_flag("--noise-free", o->noise_free, "No noise, no wander, exact encoders");
   command->add_flag("--rest-only", o->rest_only, "The table never turns: a run that cannot be solved")->excludes(run);
   command->add_flag("--no-sheet", o->no_sheet, "Leave the sheet out of the run file")->excludes(run);

@@ -265,6 +265,20 @@ Json summary_tree(const comparison::Summary& s) {
   return {{"n", s.n}, {"mean", s.mean}, {"s", s.deviation}, {"low", s.low}, {"high", s.high}};
 }
 
+/// The values of two methods on the seeds that both have.
+std::pair<std::vector<double>, std::vector<double>> pairs_of(const Json& all, const std::string& a,
+                                                             const std::string& b, const char* name) {
+  std::pair<std::vector<double>, std::vector<double>> pairs;
+  for (const Json& trial : all["trials"]) {
+    const Json& methods = trial["methods"];
+    if (!methods.contains(a) || !methods.contains(b) || !methods[a].contains(name) || !methods[b].contains(name))
+      continue;
+    pairs.first.push_back(methods[a][name].get<double>());
+    pairs.second.push_back(methods[b][name].get<double>());
+  }
+  return pairs;
+}
+
 /// What the trials say.
 Json conclude(const Json& all) {
   Json tree;
@@ -289,10 +303,10 @@ Json conclude(const Json& all) {
       const std::vector<double> values = figures_of(all, method, name);
       if (values.empty()) continue;
       one[name] = summary_tree(comparison::summarise(values));
-      const std::vector<double> reference = figures_of(all, ours, name);
-      if (method != ours && reference.size() == values.size()) {
-        one[name]["times_ours"] = comparison::summarise(values).mean / comparison::summarise(reference).mean;
-        one[name]["paired_p"] = comparison::paired_t_test(values, reference);
+      const auto [theirs, reference] = pairs_of(all, method, ours, name);
+      if (method != ours && theirs.size() > 1) {
+        one[name]["times_ours"] = comparison::summarise(theirs).mean / comparison::summarise(reference).mean;
+        one[name]["paired_p"] = comparison::paired_t_test(theirs, reference);
       }
     }
     const std::vector<double> pulls = figures_of(all, method, "squared_pulls");

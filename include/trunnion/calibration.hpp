@@ -17,3 +17,4 @@
 #include "trunnion/calibration/rate_test.hpp"
 #include "trunnion/calibration/rests_and_turns.hpp"
 #include "trunnion/calibration/twelve_position_solve.hpp"
+#include "trunnion/calibration/verification.hpp"

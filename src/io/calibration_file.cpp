@@ -270,6 +270,11 @@ CalibrationFile read_calibration_file(const std::string& path) {
       root.at("verdict").fail("should be within_limits or out_of_limits");
     file.within_limits = verdict == "within_limits";
   }
+  if (root.has("provenance") && root.at("provenance").has("inputs")) {
+    const StrictYaml inputs = root.at("provenance").at("inputs");
+    for (std::size_t i = 0; i < inputs.length(); ++i)
+      file.inputs.emplace_back(inputs.at(i).at("path").text(), inputs.at(i).at("sha256").text());
+  }
   return file;
 }
 

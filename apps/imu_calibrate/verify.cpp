@@ -1,0 +1,182 @@
+// SPDX-FileCopyrightText: 2026 the trunnion authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "../outputs.hpp"
+#include "../terminal.hpp"
+#include "command.hpp"
+#include "recordings.hpp"
+#include "result.hpp"
+#include "trunnion/calibration/verification.hpp"
+#include "trunnion/core/units.hpp"
+#include "trunnion/io/calibration_file.hpp"
+#include "trunnion/io/urdf.hpp"
+#include "trunnion/io/whole_file.hpp"
+
+namespace trunnion::app {
+namespace {
+
+struct Options {
+  std::string calibration;
+  std::string run;
+  std::string output;
+  double most_times_floor = 2.0;
+  std::string format = "text";
+};
+
+/// Each sample as it is, and corrected; both with the same encoders.
+class BeforeAndAfter final : public SampleSink {
+ public:
+  BeforeAndAfter(const calibration::CompressOptions& options, const UnitCorrection<double>& correction)
+      : before(options), after(options), correction_(correction) {}
+  void imu(std::int64_t utime, const InertialSample<double>& sample) override {
+    before.imu(utime, sample);
+    after.imu(utime, correction_.correct(sample));
+  }
+  void encoder(std::int64_t utime, double azimuth, double pitch) override {
+    before.encoder(utime, azimuth, pitch);
+    after.encoder(utime, azimuth, pitch);
+  }
+  calibration::Compressor before;
+  calibration::Compressor after;
+
+ private:
+  const UnitCorrection<double>& correction_;
+};
+
+/// Place of a mount of the recording among those of the calibration.
+std::size_t mount_in(const io::CalibrationFile& file, const std::string& path, const std::string& mount) {
+  const auto at = std::find(file.mounts.begin(), file.mounts.end(), mount);
+  if (at == file.mounts.end())
+    throw Error(ExitCode::kInput, path + ": knows nothing of mount '" + mount + "': its own error there was not found");
+  return static_cast<std::size_t>(at - file.mounts.begin());
+}
+
+ExitCode verify(const Options& o) {
+  const io::CalibrationFile file = io::read_calibration_file(o.calibration);
+  const io::RunFile run = io::read_run_file(o.run);
+  if (run.rig.empty()) throw Error(ExitCode::kInput, o.run + ": a verification needs a rig with encoders");
+  if (!file.record.has_rig)
+    throw Error(ExitCode::kInput,
+                o.calibration + ": was made by hand: it knows nothing of the table to hold it against");
+  if (!run.sheet.has_noise)
+    throw Error(ExitCode::kInput, o.run + ": a verification needs a sheet that states the noise: its floor");
+  check_outputs({o.output}, files_of(run));
+  check_outputs({o.output}, {o.calibration});
+  const io::RigFile rig = io::read_rig(run.rig, run.outer_axis, run.inner_axis, file.mounts);
+  nlohmann::ordered_json tree;
+  tree["format"] = "trunnion-verification/1";
+  std::string csv = "recording,t_s";
+  static constexpr std::array<const char*, 6> kAxis = {"gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z"};
+  for (const char* const when : {"before", "after"}) {
+    for (std::size_t axis = 0; axis < 6; ++axis)
+      csv += std::string(",") + kAxis[axis] + "_" + when + (axis < 3 ? "_deg_s" : "_m_s2");
+  }
+  csv += "\n";
+  double worst = 0.0;
+  for (std::size_t r = 0; r < run.recordings.size(); ++r) {
+    const io::RecordingFiles& files = run.recordings[r];
+    const std::size_t mount = mount_in(file, o.calibration, files.mount);
+    const UnitCorrection<double> correction(file.record.value.unit);
+    BeforeAndAfter both(compress_options(run, files), correction);
+    {
+      ProgressLine progress;
+      std::vector<std::pair<std::string, std::string>> digests;
+      io::read_recording(run, files, both, digests, [&](double fraction) {
+        progress.show("reading " + files.name() + " " + std::to_string(static_cast<int>(100.0 * fraction)) + " %");
+      });
+      for (const auto& [path, digest] : digests) {
+        for (const auto& [used, used_digest] : file.inputs) {
+          if (digest == used_digest)
+            throw Error(ExitCode::kInput, path + ": is " + used +
+                                              " of the calibration itself: a verification needs data that "
+                                              "were not used");
+        }
+      }
+    }
+    const calibration::Verification v =
+        calibration::verify(both.before.finish(), both.after.finish(), static_cast<int>(mount), file.record.value,
+                            rig.rig, run.site, run.sheet.noise);
+    nlohmann::ordered_json one = {
+        {"recording", files.name()}, {"mount", files.mount}, {"windows", v.windows}, {"window_s", v.window}};
+    for (std::size_t axis = 0; axis < 6; ++axis) {
+      const calibration::AxisVerification& a = v.axis[axis];
+      const double unit = axis < 3 ? kRadPerDeg : 1e3 * kMetresPerS2PerMicroG;
+      one["axes"].push_back({{"axis", kAxis[axis]},
+                             {"unit", axis < 3 ? "deg/s" : "mg"},
+                             {"mean_before", a.mean_before / unit},
+                             {"sd_before", a.before / unit},
+                             {"mean_after", a.mean_after / unit},
+                             {"sd_after", a.after / unit},
+                             {"floor", a.floor / unit},
+                             {"times_floor", a.after / a.floor}});
+      worst = std::max(worst, a.after / a.floor);
+    }
+    tree["recordings"].push_back(one);
+    for (const auto& row : v.course) {
+      csv += std::to_string(r + 1);
+      for (std::size_t i = 0; i < row.size(); ++i) {
+        const bool gyro = (i >= 1 && i <= 3) || (i >= 7 && i <= 9);
+        csv += "," + figure(gyro ? row[i] / kRadPerDeg : row[i], 9);
+      }
+      csv += "\n";
+    }
+  }
+  tree["worst_times_floor"] = worst;
+  tree["limit_times_floor"] = o.most_times_floor;
+  tree["verdict"] = worst <= o.most_times_floor ? "within_limits" : "out_of_limits";
+  if (!o.output.empty()) io::write_whole(o.output, csv);
+  if (o.format == "json") {
+    std::printf("%s", json_text(tree).c_str());
+  } else {
+    for (const auto& one : tree["recordings"]) {
+      std::printf(
+          "%s in %s, %lld windows of %s s: output minus what the table does\n%-8s %-6s %12s %12s %12s %12s %12s %7s\n",
+          one["recording"].get<std::string>().c_str(), one["mount"].get<std::string>().c_str(),
+          one["windows"].get<long long>(), figure(one["window_s"].get<double>(), 3).c_str(), "axis", "unit",
+          "mean before", "sd before", "mean after", "sd after", "floor", "times");
+      for (const auto& a : one["axes"]) {
+        std::printf("%-8s %-6s", a["axis"].get<std::string>().c_str(), a["unit"].get<std::string>().c_str());
+        for (const char* const name : {"mean_before", "sd_before", "mean_after", "sd_after", "floor"})
+          std::printf(" %12s", figure(a[name].get<double>(), 4).c_str());
+        std::printf(" %7s\n", figure(a["times_floor"].get<double>(), 3).c_str());
+      }
+    }
+    std::printf("verdict: %s, worst standard deviation %s times its floor, limit %s\n",
+                worst <= o.most_times_floor ? "within limits" : "out of limits", figure(worst, 3).c_str(),
+                figure(o.most_times_floor, 3).c_str());
+  }
+  return worst <= o.most_times_floor ? ExitCode::kDone : ExitCode::kOutOfLimits;
+}
+
+}  // namespace
+
+void add_verify(CLI::App& app, ExitCode& exit_code) {
+  CLI::App* command = app.add_subcommand(
+      "verify",
+      "Hold a calibration against recordings that it has not seen: output minus the table's rate, before and after");
+  auto o = std::make_shared<Options>();
+  command->add_option("calibration", o->calibration, "Calibration file of a table run")->required();
+  command->add_option("run", o->run, "Run file of the other recordings")->required();
+  command->add_option("-o,--output", o->output, "CSV of the differences to write, window by window");
+  command
+      ->add_option("--most-times-floor", o->most_times_floor,
+                   "Verdict: the largest standard deviation after, over what noise and wander leave")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  command->add_option("--format", o->format, "Of the result on standard output")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"text", "json"}));
+  command->footer(
+      "Example:\n  imu_calibrate verify calibration.yaml another/run.yaml\nThe turn-on bias is another one each time: "
+      "it shows "
+      "in the means, not in the deviations.");
+  command->callback([o, &exit_code] { exit_code = verify(*o); });
+}
+
+}  // namespace trunnion::app
