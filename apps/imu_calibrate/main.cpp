@@ -27,6 +27,7 @@ ExitCode run_command(std::vector<std::string> arguments) {
   add_export(app, exit_code);
   add_compare(app, exit_code);
   add_verify(app, exit_code);
+  add_report(app, exit_code);
   add_allan(app, exit_code);
   add_trials(app, exit_code);
   add_demo(app, exit_code);

@@ -10,6 +10,7 @@
 
 #include "../outputs.hpp"
 #include "../terminal.hpp"
+#include "bench.hpp"
 #include "command.hpp"
 #include "result.hpp"
 #include "trunnion/core/earth.hpp"
@@ -67,7 +68,7 @@ std::unique_ptr<Setup> setup_of(const Options& o) {
     if (s.run.rig.empty()) throw Error(ExitCode::kInput, o.run + ": a plan needs a rig");
     names = mounts_of(s.run);
     s.rig = io::read_rig(s.run.rig, s.run.outer_axis, s.run.inner_axis, names);
-    for (const io::RecordingFiles& files : s.run.recordings) s.mounts.push_back(files.mount);
+    s.mounts = mounts_of_recordings(s.run);
   } else {
     s.run.rig = o.rig;
     s.run.sheet_path = o.sheet;
@@ -81,20 +82,14 @@ std::unique_ptr<Setup> setup_of(const Options& o) {
   if (!s.run.sheet.has_noise)
     throw Error(ExitCode::kInput, (s.run.sheet_path.empty() ? o.run : s.run.sheet_path) +
                                       ": a plan needs a sheet that states the noise: nothing is measured yet");
+  s.bench = bench_of(s.run, s.rig, names, s.mounts);
   planning::Bench& b = s.bench;
-  b.rig = &s.rig.rig;
-  b.site = s.run.site;
-  for (const std::string& mount : s.mounts)
-    b.mounts.push_back(static_cast<int>(std::find(names.begin(), names.end(), mount) - names.begin()));
-  b.limits = s.rig.limits;
   for (AxisLimits& axis : b.limits) {
     axis.acceleration = o.acceleration_deg * kRadPerDeg;
     axis.rate = std::min(axis.rate, std::max(o.largest_rate_deg, 1.0) * kRadPerDeg);
   }
   b.largest_rate = o.largest_rate_deg * kRadPerDeg;
   if (s.run.sheet.gyro_range > 0.0) b.largest_rate = std::min(b.largest_rate, kUsedRange * s.run.sheet.gyro_range);
-  b.prediction.solve = table_options(s.run, names);
-  if (s.run.sheet.rate_hz > 0.0) b.prediction.rate = s.run.sheet.rate_hz;
   b.prediction.encoder_rate = o.encoder_rate;
   b.prediction.encoder_quantum = o.encoder_bits > 0 ? 2.0 * kPi / std::ldexp(1.0, o.encoder_bits) : 0.0;
   return setup;

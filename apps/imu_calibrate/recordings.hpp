@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "trunnion/calibration/compress.hpp"
 #include "trunnion/calibration/rests_and_turns.hpp"
 #include "trunnion/calibration/twelve_position_solve.hpp"
 #include "trunnion/io/run_file.hpp"
@@ -43,6 +44,26 @@ OneRecording one_recording(const std::string& input, const std::string& channel,
 
 /// How a recording of the run is compressed, whether it is read or comes live.
 calibration::CompressOptions compress_options(const io::RunFile& run, const io::RecordingFiles& files);
+
+/// Each sample as it is, and corrected; both with the same encoders.
+class BeforeAndAfter final : public SampleSink {
+ public:
+  BeforeAndAfter(const calibration::CompressOptions& options, const UnitCorrection<double>& correction)
+      : before(options), after(options), correction_(correction) {}
+  void imu(std::int64_t utime, const InertialSample<double>& sample) override {
+    before.imu(utime, sample);
+    after.imu(utime, correction_.correct(sample));
+  }
+  void encoder(std::int64_t utime, double azimuth, double pitch) override {
+    before.encoder(utime, azimuth, pitch);
+    after.encoder(utime, azimuth, pitch);
+  }
+  calibration::Compressor before;
+  calibration::Compressor after;
+
+ private:
+  const UnitCorrection<double>& correction_;
+};
 
 /// Reads and compresses every recording, on as many threads as the machine has. @p mounts: names, in the rig's order
 std::vector<calibration::TableRecording> read_table_recordings(const io::RunFile& run,

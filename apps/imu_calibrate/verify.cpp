@@ -29,26 +29,6 @@ struct Options {
   std::string format = "text";
 };
 
-/// Each sample as it is, and corrected; both with the same encoders.
-class BeforeAndAfter final : public SampleSink {
- public:
-  BeforeAndAfter(const calibration::CompressOptions& options, const UnitCorrection<double>& correction)
-      : before(options), after(options), correction_(correction) {}
-  void imu(std::int64_t utime, const InertialSample<double>& sample) override {
-    before.imu(utime, sample);
-    after.imu(utime, correction_.correct(sample));
-  }
-  void encoder(std::int64_t utime, double azimuth, double pitch) override {
-    before.encoder(utime, azimuth, pitch);
-    after.encoder(utime, azimuth, pitch);
-  }
-  calibration::Compressor before;
-  calibration::Compressor after;
-
- private:
-  const UnitCorrection<double>& correction_;
-};
-
 /// Place of a mount of the recording among those of the calibration.
 std::size_t mount_in(const io::CalibrationFile& file, const std::string& path, const std::string& mount) {
   const auto at = std::find(file.mounts.begin(), file.mounts.end(), mount);
