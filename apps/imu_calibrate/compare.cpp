@@ -8,6 +8,7 @@
 
 #include "../terminal.hpp"
 #include "command.hpp"
+#include "compare_methods.hpp"
 #include "trunnion/core/units.hpp"
 #include "trunnion/io/calibration_file.hpp"
 
@@ -17,6 +18,7 @@ namespace {
 struct Options {
   std::string first;
   std::string second;
+  std::string methods;
   std::string format = "text";
   double most_sigmas = 5.0;
 };
@@ -99,6 +101,11 @@ std::vector<Difference> differences(const io::CalibrationFile& a, const io::Cali
 }
 
 ExitCode compare(const Options& o) {
+  if (!o.methods.empty()) {
+    if (!o.second.empty()) throw Error(ExitCode::kUsage, "--methods: of one run file, not of two calibrations");
+    return compare_methods(o.first, o.methods, o.format == "json");
+  }
+  if (o.second.empty()) throw Error(ExitCode::kUsage, "two calibrations, or a run file and --methods");
   const io::CalibrationFile first = io::read_calibration_file(o.first);
   const io::CalibrationFile second = io::read_calibration_file(o.second);
   if (first.gauge != second.gauge) {
@@ -152,10 +159,15 @@ ExitCode compare(const Options& o) {
 
 void add_compare(CLI::App& app, ExitCode& exit_code) {
   CLI::App* command = app.add_subcommand(
-      "compare", "Hold two calibrations side by side in sigmas, or one against the truth of a simulation");
+      "compare",
+      "Hold two calibrations side by side in sigmas, one against the truth of a simulation, or the methods of a run");
   auto o = std::make_shared<Options>();
-  command->add_option("first", o->first, "Calibration file")->required();
-  command->add_option("second", o->second, "Another, or truth.yaml")->required();
+  command->add_option("first", o->first, "Calibration file; with --methods, a run file")->required();
+  command->add_option("second", o->second, "Another, or truth.yaml");
+  command->add_option(
+      "--methods", o->methods,
+      "Calibrate one run by several methods: all, or some of traditional, rate_test, kalman_36, by_hand, "
+      "twelve_position");
   command->add_option("--format", o->format, "Of the result")
       ->capture_default_str()
       ->check(CLI::IsMember({"text", "json"}));
