@@ -41,7 +41,7 @@ struct RunFile {
   std::string path;
   Site site;
   double height = 0.0;  ///< of the site [m]
-  std::string rig;  ///< URDF, or empty: by hand
+  std::string rig;      ///< URDF, or empty: by hand
   std::string outer_axis = "azimuth";
   std::string inner_axis = "pitch";
   std::string sheet_path;  ///< or empty
