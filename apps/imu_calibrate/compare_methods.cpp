@@ -69,7 +69,7 @@ class Methods {
         take(result.unit, column);
         // an entry that is as uncertain as it was before says nothing
         for (int i = 0; i < 9; ++i) {
-          if (result.sigma(6 + i) > kUnknown) column.M(i / 3, i % 3) = std::nan("");
+          if (!(result.covariance(6 + i, 6 + i) < kUnknown * kUnknown)) column.M(i / 3, i % 3) = std::nan("");
         }
       } else {
         RunInputs inputs;
@@ -119,9 +119,9 @@ class Methods {
 }  // namespace
 
 const std::vector<std::string>& methods_of_a_run() {
-  static const std::vector<std::string> methods = {"traditional", "rate_test", "kalman_36", "by_hand",
-                                                   "twelve_position"};
-  return methods;
+  static const std::vector<std::string> kMethods = {"traditional", "rate_test", "kalman_36", "by_hand",
+                                                    "twelve_position"};
+  return kMethods;
 }
 
 ExitCode compare_methods(const std::string& run, const std::string& methods, bool json) {

@@ -313,7 +313,7 @@ Kalman36Result Kalman36::finish(const Site& site, const Kalman36Options& options
     Pass pass(data, site, options, result.unit, result.lever);
     pass.run();
     const State& x = pass.state();
-    result.sigma = pass.covariance().diagonal().tail<kStates - 6>().cwiseMax(0.0).cwiseSqrt();
+    result.covariance = pass.covariance().bottomRightCorner<kStates - 6, kStates - 6>();
     if (!x.allFinite()) throw Error(ExitCode::kNumerics, name_ + ": the system-level filter diverged");
     // (I + M) <- (I + M)(I + dM), b <- b + (I + M) db
     Mat3<double> dG;
@@ -329,7 +329,8 @@ Kalman36Result Kalman36::finish(const Site& site, const Kalman36Options& options
     unit.accel.quadratic += x.segment<3>(kQuadratic);
     result.lever[0] += x.segment<3>(kLeverY);
     result.lever[1] += x.segment<3>(kLeverZ);
-    const double change = x.tail<kStates - 6>().cwiseAbs().cwiseQuotient(result.sigma.cwiseMax(1e-300)).maxCoeff();
+    const Eigen::VectorXd sigma = result.covariance.diagonal().cwiseMax(1e-300).cwiseSqrt();
+    const double change = x.tail<kStates - 6>().cwiseAbs().cwiseQuotient(sigma).maxCoeff();
     if (change < options.converged) return result;
   }
   throw Error(ExitCode::kNumerics,

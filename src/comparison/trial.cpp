@@ -132,7 +132,7 @@ Outcome solved(const TrialSettings& s, const simulation::TableRunSettings& run, 
 template <class Sink>
 CalibrationValues feed(const TrialSettings& s, const simulation::TableRunSettings& run, const TableSequence& sequence,
                        Sink& sink) {
-  const CalibrationValues truth = simulation::draw_truth(run, s.gimbal, s.site, 1);
+  CalibrationValues truth = simulation::draw_truth(run, s.gimbal, s.site, 1);
   simulation::run_table(run, truth, s.gimbal, s.site, simulation::motion_of(sequence), 0, 0,
                         {[&](std::int64_t t, std::int64_t, const InertialSample<double>& x) { sink.imu(t, x); },
                          [](std::int64_t, std::int64_t, double, double) {}});

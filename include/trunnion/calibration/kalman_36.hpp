@@ -38,7 +38,7 @@ struct Kalman36Result {
   InertialUnit<double> unit;  ///< in the frame of the accelerometers
   std::array<Vec3<double>, 2> lever = {Vec3<double>::Zero(),
                                        Vec3<double>::Zero()};  ///< of the y and z accelerometers against x [m]
-  Eigen::VectorXd sigma;                                       ///< of the 30 parameters of eq. (1), SI
+  Eigen::MatrixXd covariance;                                  ///< of the 30 parameters in the order of eq. (1), SI
   int rounds = 0;
   int rests = 0;
 };
