@@ -162,7 +162,9 @@ std::string sheet_text(const Options& o, const std::array<TriadNoise, 6>& axis, 
            figure(noise.wander / unit.si, 5) +
            ", bias_correlation_time_s: " + figure(noise.wander_correlation_time, 4) + "}\n";
   };
-  return "format: trunnion-sheet/1\n# measured by an Allan deviation of " + o.input + "\nmodel: " + o.model +
+  // a string of JSON is one of YAML, whatever it holds
+  return "format: trunnion-sheet/1\nmodel: " +
+         nlohmann::json(o.model).dump(-1, ' ', true, nlohmann::json::error_handler_t::replace) +
          "\nrate_hz: " + figure(1.0 / period, 8) +
          "\ngyroscope:     " + triad(gyro, "noise_deg_per_h_per_rt_hz", "bias_instability_deg_per_h", kGyroUnit) +
          "accelerometer: " + triad(accel, "noise_ug_per_rt_hz", "bias_instability_ug", kAccelUnit);
@@ -197,6 +199,9 @@ void allan(const Options& o) {
         calibration::allan_deviation(samples.readings(axis), samples.period());
     const calibration::NoiseTerms terms = calibration::fit_noise_terms(curve);
     noise[axis] = calibration::fit_sheet_noise(curve);
+    if (!o.sheet.empty() && !(noise[axis].density > 0.0))
+      throw Error(ExitCode::kInput,
+                  o.input + ": " + kAxis[axis] + " shows no white noise: it is stuck, and there is no sheet of it");
     nlohmann::ordered_json one;
     one["axis"] = kAxis[axis];
     one["unit"] = unit.name;

@@ -45,7 +45,7 @@ struct Options {
   double time = 0.0;
   double longest = 7200.0;
   double largest_rate_deg = 50.0;
-  double acceleration_deg = 50.0;
+  double acceleration_deg = 100.0;
   double encoder_rate = 200.0;
   int encoder_bits = 21;
   std::string format = "text";
@@ -96,7 +96,7 @@ std::unique_ptr<Setup> setup_of(const Options& o) {
 }
 
 /// A sequence that is known by name, in every mount.
-std::vector<simulation::TableSequence> preset(const Setup& s, const std::string& name) {
+std::vector<simulation::TableSequence> preset(const Setup& s, const std::string& name, const TableLimits& limits) {
   const AxisLimits& pitch = s.rig.limits[kPitch];
   std::vector<simulation::TableSequence> all;
   for (std::size_t r = 0; r < s.mounts.size(); ++r) {
@@ -114,7 +114,7 @@ std::vector<simulation::TableSequence> preset(const Setup& s, const std::string&
     } else {
       all.push_back(simulation::whole_turns(kDwell, kSlowTurn));
     }
-    simulation::check_limits(all.back(), s.rig.limits, name + " in " + s.mounts[r]);
+    simulation::check_limits(all.back(), limits, name + " in " + s.mounts[r]);
   }
   return all;
 }
@@ -143,7 +143,8 @@ planning::WantedSigmas wanted_of(const Options& o, const Setup& s) {
     if (s.run.limits[i].sigma > 0.0) wanted[i] = s.run.limits[i].sigma;
   }
   if (!o.as_good_as.empty()) {
-    const planning::WantedSigmas theirs = planning::sigmas_of(planning::predict(s.bench, preset(s, o.as_good_as)));
+    const planning::WantedSigmas theirs =
+        planning::sigmas_of(planning::predict(s.bench, preset(s, o.as_good_as, s.rig.limits)));
     for (std::size_t i = 0; i < wanted.size(); ++i) {
       const auto kind = static_cast<Entry>(i);
       // a turn-on bias is another one at the next turn-on, and how well a mean over minutes knows it is the wander's
@@ -186,6 +187,9 @@ void write_plan(const Options& o, const Setup& s, const planning::Plan& plan, co
   fs::create_directories(o.output, error);
   if (error) throw Error(ExitCode::kInput, o.output + ": cannot make the folder: " + error.message());
   const fs::path folder(o.output);
+  std::error_code same;
+  if (!o.run.empty() && fs::equivalent(o.run, folder / "run.yaml", same))
+    throw Error(ExitCode::kUsage, o.output + ": holds the run file that is planned for: choose another folder");
   std::string run = "format: trunnion-run/1\nsite: {latitude_deg: " + figure(s.run.site.latitude / kRadPerDeg, 12) +
                     ", gravity_m_s2: " + figure(s.run.site.gravity, 12) +
                     ", gravity_sigma_m_s2: " + figure(s.run.site.gravity_sigma, 6) + "}\nrig: rig.urdf\n";
@@ -277,11 +281,12 @@ ExitCode plan(const Options& o) {
   const planning::WantedSigmas wanted = wanted_of(o, *setup);
   planning::Plan plan;
   if (!o.preset.empty()) {
-    plan = planning::predict(setup->bench, preset(*setup, o.preset));
+    plan = planning::predict(setup->bench, preset(*setup, o.preset, setup->bench.limits));
   } else if (!setup->run.moves.empty() && o.time == 0.0 && o.as_good_as.empty() && o.sigmas.empty()) {
     const io::TableMoves moves = io::read_table_moves(setup->run.moves, setup->mounts.size());
     for (std::size_t r = 0; r < moves.size(); ++r)
-      simulation::check_limits(moves[r], setup->rig.limits, setup->run.moves + ": recording " + std::to_string(r + 1));
+      simulation::check_limits(moves[r], setup->bench.limits,
+                               setup->run.moves + ": recording " + std::to_string(r + 1));
     plan = planning::predict(setup->bench, moves);
   } else {
     if (!any(wanted))
@@ -308,14 +313,12 @@ ExitCode plan(const Options& o) {
   }
   const double worst = plan.worst(wanted);
   if (!any(wanted) || worst <= 1.0 + 1e-9) return ExitCode::kDone;
-  // white noise and wander both average over time
-  std::fprintf(
-      stderr, "the worst sigma is %s times the wanted: %s\n", figure(worst, 3).c_str(),
-      o.preset.empty() && o.time == 0.0
-          ? ("no plan within " + figure(o.longest, 6) + " s reaches it (--longest-s), nor will one much below " +
-             figure(plan.duration() * worst * worst, 2) + " s")
-                .c_str()
-          : ("it would take about " + figure(plan.duration() * worst * worst, 2) + " s of such moves").c_str());
+  const bool capped = o.preset.empty() && o.time == 0.0;
+  std::fprintf(stderr, "the worst sigma is %s times the wanted: %s\n", figure(worst, 3).c_str(),
+               capped ? ("no plan was found within " + figure(o.longest, 6) + " s (--longest-s)").c_str()
+                      : ("as sigmas go with the root of time, about " + figure(plan.duration() * worst * worst, 2) +
+                         " s of such moves would do")
+                            .c_str());
   return ExitCode::kOutOfLimits;
 }
 

@@ -98,7 +98,7 @@ bool is_run_file(const std::string& path) { return has_extension(path, {".yaml",
 bool is_table(const std::string& path) { return has_extension(path, {".csv", ".txt", ".tsv", ".dat", ".mat"}); }
 
 std::vector<std::string> files_of(const io::RunFile& run) {
-  std::vector<std::string> files = {run.path, run.rig, run.sheet_path};
+  std::vector<std::string> files = {run.path, run.rig, run.sheet_path, run.moves};
   for (const io::RecordingFiles& recording : run.recordings)
     files.insert(files.end(), {recording.lcm, recording.imu, recording.encoder, recording.gyro, recording.accel});
   return files;

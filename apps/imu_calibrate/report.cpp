@@ -17,6 +17,7 @@
 #include "command.hpp"
 #include "recordings.hpp"
 #include "result.hpp"
+#include "trials_file.hpp"
 #include "trunnion/calibration/allan_deviation.hpp"
 #include "trunnion/calibration/verification.hpp"
 #include "trunnion/core/units.hpp"
@@ -231,6 +232,8 @@ Section allan(const std::string& path) {
     std::array<double, 4> v{};
     if (std::sscanf(row.c_str(), "%15[a-z_],%lf,%lf,%lf,%lf", axis.data(), &v[0], &v[1], &v[2], &v[3]) != 5)
       throw Error(ExitCode::kInput, path + ":" + std::to_string(line) + ": is no row of a curve");
+    if (!std::all_of(v.begin(), v.end(), [](double value) { return std::isfinite(value) && value >= 0.0; }))
+      throw Error(ExitCode::kInput, path + ":" + std::to_string(line) + ": is not finite");
     curves[axis.data()].push_back({v[0], v[1], v[2], v[3]});
     from = end;
   }
@@ -254,9 +257,7 @@ Section allan(const std::string& path) {
 /// The methods of a campaign, each axis as best mean over its own: one is the best.
 Section radar(const std::string& path) {
   Section section{"Methods compared", {}, {}, {}};
-  const nlohmann::ordered_json all = nlohmann::ordered_json::parse(io::read_whole(path), nullptr, false);
-  if (all.is_discarded() || all.value("format", "") != "trunnion-trials/1")
-    throw Error(ExitCode::kInput, path + ": is no result file of trials");
+  const nlohmann::ordered_json all = read_trials(path);
   const std::vector<std::pair<const char*, const char*>> figures = {{"installation_deg", "installation"},
                                                                     {"aligned_deg", "cross-coupling"},
                                                                     {"gyro_scale_ppm", "gyro scale"},
@@ -322,7 +323,7 @@ Section radar(const std::string& path) {
   return section;
 }
 
-void report_of(const Options& o) {
+ExitCode report_of(const Options& o) {
   std::string format = o.format;
   if (format.empty()) {
     const std::string extension = std::filesystem::path(o.output).extension().string();
@@ -331,6 +332,7 @@ void report_of(const Options& o) {
   const io::RunFile run = io::read_run_file(o.run);
   if (run.rig.empty()) throw Error(ExitCode::kInput, o.run + ": a report is of a table run: this run has no rig");
   check_outputs({o.output}, files_of(run));
+  check_outputs({o.output}, {o.trials, o.allan});
   ProgressLine progress;
   RunInputs inputs;
   const std::vector<std::string> names = mounts_of(run);
@@ -387,6 +389,7 @@ void report_of(const Options& o) {
     std::fputs(text.c_str(), stdout);
   else
     io::write_whole(o.output, text);
+  return file.within_limits ? ExitCode::kDone : ExitCode::kOutOfLimits;
 }
 
 }  // namespace
@@ -403,10 +406,7 @@ void add_report(CLI::App& app, ExitCode& exit_code) {
       ->check(CLI::IsMember({"html", "markdown", "json"}));
   command->footer(
       "Example:\n  imu_calibrate report run.yaml -o report.html\nPictures are made by gnuplot, where it is installed.");
-  command->callback([o, &exit_code] {
-    report_of(*o);
-    exit_code = ExitCode::kDone;
-  });
+  command->callback([o, &exit_code] { exit_code = report_of(*o); });
 }
 
 }  // namespace trunnion::app

@@ -113,6 +113,8 @@ Bench bench_of_options(const Options& o, std::string& run) {
   for (int m = 0; m < bench.rig.rig.mounts; ++m) {
     bench.moves.push_back(o.rest_only ? simulation::rest_only(pitch.lowest, pitch.highest)
                                       : simulation::experiment(pitch.lowest, pitch.highest, m));
+    simulation::check_limits(bench.moves.back(), bench.rig.limits,
+                             o.rig + ": the moves in " + bench.rig.mounts[static_cast<std::size_t>(m)]);
     bench.mount.push_back(m);
     bench.logs.push_back("position_" + std::to_string(m + 1) + ".lcm");
     run += "  - {mount: " + bench.rig.mounts[static_cast<std::size_t>(m)] + ", log: " + bench.logs.back() + "}\n";
@@ -134,7 +136,7 @@ Bench bench_of_run(const std::string& path, std::string& text) {
   bench.serial = run.serial;
   const fs::path folder = fs::path(path).parent_path();
   const auto beside = [&](const std::string& file) {
-    const std::string name = fs::path(file).lexically_relative(folder.empty() ? fs::path(".") : folder).string();
+    std::string name = fs::path(file).lexically_relative(folder.empty() ? fs::path(".") : folder).string();
     if (name.empty() || name.rfind("..", 0) == 0)
       throw Error(ExitCode::kInput, path + ": to be simulated, a run has its files in its own folder, not " + file);
     return name;
@@ -187,6 +189,11 @@ void simulate(const Options& o) {
   fs::create_directories(o.output, error);
   if (error) throw Error(ExitCode::kInput, o.output + ": cannot make the folder: " + error.message());
   const fs::path folder(o.output);
+  for (const std::string& log : bench.logs) {
+    if (fs::exists(folder / log) && !fs::exists(folder / "truth.yaml"))
+      throw Error(ExitCode::kUsage,
+                  (folder / log).string() + ": is there, and no simulation made it: choose another folder");
+  }
   ProgressLine progress;
   for (std::size_t r = 0; r < bench.logs.size(); ++r) {
     progress.show("simulating " + bench.logs[r]);

@@ -11,6 +11,7 @@
 #include "command.hpp"
 #include "recordings.hpp"
 #include "result.hpp"
+#include "trunnion/calibration/model_choice.hpp"
 #include "trunnion/calibration/multi_position_solve.hpp"
 #include "trunnion/io/calibration_file.hpp"
 #include "trunnion/io/urdf.hpp"
@@ -23,17 +24,36 @@ struct Options {
   std::string run;
   std::string output;
   std::string format = "text";
+  std::string model;
   int hold_out = 0;
 };
 
-calibration::Solution solve_on_table(const io::RunFile& run, RunInputs& inputs, std::vector<std::string>& mounts) {
+/// What was tried, and what came of it, in words.
+void say(const calibration::ModelChoice& choice) {
+  for (const calibration::TermVerdict& v : choice.verdicts) {
+    if (!v.why.empty()) {
+      std::fprintf(stderr, "model: %s left out: %s\n", v.term.c_str(), v.why.substr(0, v.why.find('\n')).c_str());
+      continue;
+    }
+    std::fprintf(stderr, "model: %s %s: chi-square %s less for %d entries, asked %s", v.term.c_str(),
+                 v.taken ? "taken" : "left out", figure(v.gain, 4).c_str(), v.parameters, figure(v.asked, 3).c_str());
+    std::fprintf(stderr, v.held_out_gain != 0.0 ? "; in windows held out %s less\n" : "\n",
+                 figure(v.held_out_gain, 4).c_str());
+  }
+}
+
+calibration::Solution solve_on_table(const io::RunFile& run, RunInputs& inputs, std::vector<std::string>& mounts,
+                                     bool choose) {
   mounts = mounts_of(run);
   const io::RigFile rig = io::read_rig(run.rig, run.outer_axis, run.inner_axis, mounts);
   std::vector<calibration::TableRecording> recordings = read_table_recordings(run, mounts, inputs);
   calibration::TableSolveOptions options = table_options(run, mounts);
   ProgressLine progress;
   options.progress = [&](const std::string& stage) { progress.show(stage); };
-  return calibration::solve_table(recordings, rig.rig, run.site, options);
+  if (!choose) return calibration::solve_table(recordings, rig.rig, run.site, options);
+  calibration::ModelChoice choice = calibration::choose_model(recordings, rig.rig, run.site, options);
+  say(choice);
+  return std::move(choice.solution);
 }
 
 calibration::Solution solve_hand(const io::RunFile& run, RunInputs& inputs, int hold_out,
@@ -61,12 +81,14 @@ ExitCode solve(const Options& o) {
   const io::RunFile run = io::read_run_file(o.run);
   if (o.hold_out != 0 && !run.rig.empty())
     throw Error(ExitCode::kUsage, "--hold-out is for runs by hand: this run has a rig");
+  if (!o.model.empty() && run.rig.empty())
+    throw Error(ExitCode::kUsage, "--model auto is for runs on a table: this run has no rig");
   keep_inputs(o.output, files_of(run));
   RunInputs inputs;
   io::CalibrationFile file;
   std::vector<double> held_out;
-  calibration::Solution solution =
-      run.rig.empty() ? solve_hand(run, inputs, o.hold_out, held_out) : solve_on_table(run, inputs, file.mounts);
+  calibration::Solution solution = run.rig.empty() ? solve_hand(run, inputs, o.hold_out, held_out)
+                                                   : solve_on_table(run, inputs, file.mounts, o.model == "auto");
   if (inputs.losses.samples > 0) {
     std::fprintf(stderr, "%lld samples were lost before they were recorded, as their sequence numbers say\n",
                  inputs.losses.samples);
@@ -98,6 +120,11 @@ void add_solve(CLI::App& app, ExitCode& exit_code) {
   auto o = std::make_shared<Options>();
   command->add_option("run", o->run, "Run file")->required();
   command->add_option("-o,--output", o->output, "Calibration file to write");
+  command
+      ->add_option(
+          "--model", o->model,
+          "auto: begin with bias and matrix, and add cubic, g_sensitivity, quadratic only where the data pay for them")
+      ->check(CLI::IsMember({"auto"}));
   command->add_option("--format", o->format, "Of the result on standard output")
       ->capture_default_str()
       ->check(CLI::IsMember({"text", "json"}));

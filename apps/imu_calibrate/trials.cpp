@@ -19,11 +19,13 @@
 #include "command.hpp"
 #include "recordings.hpp"
 #include "result.hpp"
+#include "trials_file.hpp"
 #include "trunnion/comparison/statistics.hpp"
 #include "trunnion/comparison/trial.hpp"
 #include "trunnion/core/chi_square.hpp"
 #include "trunnion/core/earth.hpp"
 #include "trunnion/core/units.hpp"
+#include "trunnion/io/digest.hpp"
 #include "trunnion/io/run_file.hpp"
 #include "trunnion/io/urdf.hpp"
 #include "trunnion/io/whole_file.hpp"
@@ -35,8 +37,8 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 using comparison::Method;
 
+constexpr unsigned long long kMostSeeds = 999999;
 constexpr int kGroups = 5;  // of the test of homogeneity
-constexpr const char* kFormat = "trunnion-trials/1";
 
 struct Options {
   std::vector<std::string> inputs;
@@ -57,8 +59,9 @@ std::pair<std::uint64_t, std::uint64_t> seeds_of(const std::string& text) {
   unsigned long long to = 0;
   int used = 0;
   const int found = std::sscanf(text.c_str(), "%llu-%llu%n", &from, &to, &used);
-  if (found == 1 && text.find_first_not_of("0123456789") == std::string::npos) return {1, from};
-  if (found != 2 || static_cast<std::size_t>(used) != text.size() || from < 1 || to < from || to > 999999)
+  if (found == 1 && text.find_first_not_of("0123456789") == std::string::npos && from >= 1 && from <= kMostSeeds)
+    return {1, from};
+  if (found != 2 || static_cast<std::size_t>(used) != text.size() || from < 1 || to < from || to > kMostSeeds)
     throw Error(ExitCode::kUsage, "--seeds " + text + ": should be a number of seeds, or FROM-TO with 1 <= FROM <= TO");
   return {from, to};
 }
@@ -81,6 +84,9 @@ std::vector<Method> methods_of(const std::string& text) {
     }
     methods.push_back(static_cast<Method>(at - comparison::kMethodNames.begin()));
   }
+  std::sort(methods.begin(), methods.end());
+  methods.erase(std::unique(methods.begin(), methods.end()), methods.end());
+  if (methods.empty()) throw Error(ExitCode::kUsage, "--methods: names none");
   return methods;
 }
 
@@ -100,6 +106,11 @@ Setup setup_of(const Options& o) {
     throw Error(ExitCode::kInput, s.run.rig + ": joint '" + s.run.inner_axis +
                                       "' has no limits: the design run and the "
                                       "experiment swing within them");
+  for (int m = 0; m < rig.rig.mounts; ++m) {
+    simulation::check_limits(simulation::experiment(rig.limits[kPitch].lowest, rig.limits[kPitch].highest, m),
+                             rig.limits, s.run.rig + ": the experiment");
+  }
+  simulation::check_limits(simulation::design_run(rig.limits[kPitch]), rig.limits, s.run.rig + ": the design run");
   comparison::TrialSettings& t = s.settings;
   t.table = rig.rig;
   t.limits = rig.limits;
@@ -111,14 +122,19 @@ Setup setup_of(const Options& o) {
   if (s.run.sheet.rate_hz > 0.0) t.run.rate = s.run.sheet.rate_hz;
   t.run.mount_error = o.mount_error_deg * kRadPerDeg;
   t.navigations = o.navigations;
+  std::vector<std::string> names;
+  for (const Method method : methods_of(o.methods))
+    names.emplace_back(comparison::kMethodNames[static_cast<std::size_t>(method)]);
   s.described = {{"tool", tool_name()},
-                 {"rig", fs::path(s.run.rig).filename().string()},
-                 {"sheet", fs::path(s.run.sheet_path).filename().string()},
+                 {"rig_sha256", io::sha256(io::read_whole(s.run.rig))},
+                 {"sheet_sha256", io::sha256(io::read_whole(s.run.sheet_path))},
+                 {"mounts", mounts_of(s.run)},
                  {"latitude_deg", t.site.latitude / kRadPerDeg},
+                 {"height_m", t.height},
                  {"gravity_m_s2", t.site.gravity},
                  {"gravity_sigma_m_s2", t.site.gravity_sigma},
                  {"mount_error_deg", o.mount_error_deg},
-                 {"methods", o.methods},
+                 {"methods", names},
                  {"navigations", o.navigations}};
   return s;
 }
@@ -152,19 +168,6 @@ Json tree_of(const comparison::Trial& trial) {
   return tree;
 }
 
-Json read_results(const std::string& path) {
-  Json tree = Json::parse(io::read_whole(path), nullptr, false);
-  if (tree.is_discarded() || !tree.is_object() || tree.value("format", "") != kFormat || !tree.contains("trials") ||
-      !tree["trials"].is_array() || !tree.contains("settings"))
-    throw Error(ExitCode::kInput, path + ": is no result file of trials");
-  for (const Json& trial : tree["trials"]) {
-    if (!trial.is_object() || !trial.contains("seed") || !trial["seed"].is_number_unsigned() ||
-        !trial.contains("methods"))
-      throw Error(ExitCode::kInput, path + ": has a trial without its seed or methods");
-  }
-  return tree;
-}
-
 void sort_trials(Json& tree) {
   std::vector<Json> trials(tree["trials"].begin(), tree["trials"].end());
   std::sort(trials.begin(), trials.end(), [](const Json& a, const Json& b) {
@@ -178,7 +181,7 @@ Json merged(const std::vector<std::string>& paths) {
   Json all;
   std::map<std::uint64_t, std::string> from;
   for (const std::string& path : paths) {
-    const Json one = read_results(path);
+    const Json one = read_trials(path);
     if (all.is_null()) {
       all = one;
       all["trials"] = Json::array();
@@ -204,10 +207,10 @@ Json run_trials(const Options& o) {
   const std::vector<Method> methods = methods_of(o.methods);
   if (o.navigations > 0 && std::find(methods.begin(), methods.end(), Method::kExperiment) == methods.end())
     throw Error(ExitCode::kUsage, "--navigations: it is the calibration of the experiment that is navigated by");
-  Json all = {{"format", kFormat}, {"settings", setup.described}, {"trials", Json::array()}};
+  Json all = {{"format", kTrialsFormat}, {"settings", setup.described}, {"trials", Json::array()}};
   std::set<std::uint64_t> done;
   if (!o.output.empty() && fs::exists(o.output)) {
-    all = read_results(o.output);
+    all = read_trials(o.output);
     if (all["settings"] != setup.described)
       throw Error(ExitCode::kInput, o.output + ": holds trials of other settings: name another file");
     for (const Json& trial : all["trials"]) done.insert(trial["seed"].get<std::uint64_t>());
@@ -325,7 +328,7 @@ Json conclude(const Json& all) {
     if (homogeneous.size() >= 2 * kGroups) one["homogeneity_p"] = comparison::homogeneity(homogeneous, kGroups);
     tree["methods"][method] = one;
   }
-  std::map<std::string, std::vector<double>> reduction;
+  std::map<std::string, std::vector<double>> logarithm;  // of calibrated over raw, by seed
   std::map<std::string, std::array<double, 3>> squares;
   double count = 0.0;
   for (const Json& trial : all["trials"]) {
@@ -344,13 +347,18 @@ Json conclude(const Json& all) {
       }
       count += 1.0;
     }
-    for (const auto& [name, sums] : of_seed) reduction[name].push_back(1.0 - std::sqrt(sums[1] / sums[0]));
+    for (const auto& [name, sums] : of_seed) logarithm[name].push_back(0.5 * std::log(sums[1] / sums[0]));
   }
-  for (const auto& [name, values] : reduction) {
+  for (const auto& [name, values] : logarithm) {
+    const comparison::Summary s = comparison::summarise(values);
     tree["navigation"][name] = {{"rms_raw", std::sqrt(squares[name][0] / count)},
                                 {"rms_calibrated", std::sqrt(squares[name][1] / count)},
                                 {"rms_floor", std::sqrt(squares[name][2] / count)},
-                                {"reduction", summary_tree(comparison::summarise(values))},
+                                {"reduction",
+                                 {{"n", s.n},
+                                  {"mean", 1.0 - std::exp(s.mean)},
+                                  {"low", 1.0 - std::exp(s.high)},
+                                  {"high", 1.0 - std::exp(s.low)}}},
                                 {"reduction_of_rms", 1.0 - std::sqrt(squares[name][1] / squares[name][0])},
                                 {"times_floor", std::sqrt(squares[name][1] / squares[name][2])}};
   }
@@ -385,7 +393,7 @@ void print(const Json& tree) {
     if (one.contains("failures"))
       std::printf("%s: no result in %d trials\n", method.c_str(), one["failures"].get<int>());
     if (one.contains("nees"))
-      std::printf("%s: NEES %s of %s parameters, 1 %% band [%s, %s]\n", method.c_str(),
+      std::printf("%s: NEES %s of %s parameters, 99 %% band [%s, %s]\n", method.c_str(),
                   figure(one["nees"]["sum"].get<double>(), 5).c_str(),
                   figure(one["nees"]["parameters"].get<double>(), 6).c_str(),
                   figure(one["nees"]["low"].get<double>(), 5).c_str(),
@@ -398,7 +406,7 @@ void print(const Json& tree) {
   std::printf(
       "\nan hour of navigation in the table's motions, biases taken anew at rest in every arm\n%-14s %11s %11s %11s "
       "%28s %12s\n",
-      "at its end", "raw rms", "calibrated", "floor", "reduction, mean by seed", "times floor");
+      "at its end", "raw rms", "calibrated", "floor", "reduction, geometric mean", "times floor");
   for (const auto& [name, one] : tree["navigation"].items()) {
     const Json& r = one["reduction"];
     std::printf("%-14s %11s %11s %11s %28s %12s\n", name.c_str(), figure(one["rms_raw"].get<double>(), 4).c_str(),
@@ -427,7 +435,7 @@ std::string csv_of(const Json& all) {
 }
 
 ExitCode trials(const Options& o) {
-  check_outputs({o.output, o.csv}, o.merge ? o.inputs : std::vector<std::string>{});
+  check_outputs({o.output, o.csv}, o.inputs);
   if (!o.merge && o.inputs.size() != 1) throw Error(ExitCode::kUsage, "one run file, or --merge and result files");
   const Json all = o.merge ? merged(o.inputs) : run_trials(o);
   if (!o.output.empty()) io::write_whole(o.output, json_text(all));

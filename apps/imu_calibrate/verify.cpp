@@ -17,6 +17,7 @@
 #include "trunnion/io/calibration_file.hpp"
 #include "trunnion/io/urdf.hpp"
 #include "trunnion/io/whole_file.hpp"
+#include "trunnion/positions/entry.hpp"
 
 namespace trunnion::app {
 namespace {
@@ -26,6 +27,7 @@ struct Options {
   std::string run;
   std::string output;
   double most_times_floor = 2.0;
+  double most_sigmas = 5.0;
   std::string format = "text";
 };
 
@@ -49,6 +51,9 @@ ExitCode verify(const Options& o) {
   check_outputs({o.output}, files_of(run));
   check_outputs({o.output}, {o.calibration});
   const io::RigFile rig = io::read_rig(run.rig, run.outer_axis, run.inner_axis, file.mounts);
+  if (!file.serial.empty() && !run.serial.empty() && file.serial != run.serial)
+    throw Error(ExitCode::kInput,
+                o.run + ": is of unit '" + run.serial + "', the calibration of '" + file.serial + "'");
   nlohmann::ordered_json tree;
   tree["format"] = "trunnion-verification/1";
   std::string csv = "recording,t_s";
@@ -59,6 +64,8 @@ ExitCode verify(const Options& o) {
   }
   csv += "\n";
   double worst = 0.0;
+  int told = 0;
+  std::vector<std::string> beyond;
   for (std::size_t r = 0; r < run.recordings.size(); ++r) {
     const io::RecordingFiles& files = run.recordings[r];
     const std::size_t mount = mount_in(file, o.calibration, files.mount);
@@ -97,6 +104,30 @@ ExitCode verify(const Options& o) {
                              {"times_floor", a.after / a.floor}});
       worst = std::max(worst, a.after / a.floor);
     }
+    for (std::size_t triad = 0; triad < 2; ++triad) {
+      const Mat3<double>& of_calibration = triad == 0 ? file.record.sigma.unit.gyro.M : file.record.sigma.unit.accel.M;
+      for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 3; ++j) {
+          const Entry kind = i == j ? (triad == 0 ? Entry::kGyroScale : Entry::kAccelScale)
+                                    : (triad == 0 ? Entry::kGyroCrossCoupling : Entry::kAccelCrossCoupling);
+          const EntryKind& k = kind_of(kind);
+          if (!(v.left_sigma[triad](i, j) < run.refuse_above[static_cast<std::size_t>(kind)] * k.si)) continue;
+          const double sigma = std::hypot(v.left_sigma[triad](i, j), of_calibration(i, j));
+          const std::string sensor = triad == 0 ? "gyro " : "accelerometer ";
+          const std::string name =
+              i == j ? sensor + "xyz"[i] + " scale" : sensor + "xyz"[j] + " cross-coupling into " + "xyz"[i];
+          one["left"].push_back({{"entry", name},
+                                 {"value", v.left[triad](i, j) / k.si},
+                                 {"sigma", sigma / k.si},
+                                 {"unit", k.unit},
+                                 {"sigmas", v.left[triad](i, j) / sigma}});
+          ++told;
+          if (!(std::abs(v.left[triad](i, j)) <= o.most_sigmas * sigma))
+            beyond.push_back(files.mount + ": " + name + " " + figure(v.left[triad](i, j) / k.si, 3) + " " + k.unit +
+                             ", " + figure(v.left[triad](i, j) / sigma, 2) + " sigmas");
+        }
+      }
+    }
     tree["recordings"].push_back(one);
     for (const auto& row : v.course) {
       csv += std::to_string(r + 1);
@@ -109,7 +140,10 @@ ExitCode verify(const Options& o) {
   }
   tree["worst_times_floor"] = worst;
   tree["limit_times_floor"] = o.most_times_floor;
-  tree["verdict"] = worst <= o.most_times_floor ? "within_limits" : "out_of_limits";
+  tree["limit_sigmas"] = o.most_sigmas;
+  tree["beyond"] = beyond;
+  const bool within = worst <= o.most_times_floor && beyond.empty() && told > 0;
+  tree["verdict"] = told == 0 ? "not_told" : within ? "within_limits" : "out_of_limits";
   if (!o.output.empty()) io::write_whole(o.output, csv);
   if (o.format == "json") {
     std::printf("%s", json_text(tree).c_str());
@@ -127,11 +161,21 @@ ExitCode verify(const Options& o) {
         std::printf(" %7s\n", figure(a["times_floor"].get<double>(), 3).c_str());
       }
     }
+    std::printf("what is left of the matrices on these data, in sigmas of both: %d entries told, %zu beyond %s\n", told,
+                beyond.size(), figure(o.most_sigmas, 3).c_str());
+    for (const std::string& one : beyond) std::printf("  %s\n", one.c_str());
     std::printf("verdict: %s, worst standard deviation %s times its floor, limit %s\n",
-                worst <= o.most_times_floor ? "within limits" : "out of limits", figure(worst, 3).c_str(),
-                figure(o.most_times_floor, 3).c_str());
+                told == 0 ? "not told"
+                : within  ? "within limits"
+                          : "out of limits",
+                figure(worst, 3).c_str(), figure(o.most_times_floor, 3).c_str());
   }
-  return worst <= o.most_times_floor ? ExitCode::kDone : ExitCode::kOutOfLimits;
+  if (told == 0) {
+    std::fprintf(stderr,
+                 "unobservable: these recordings turn too little to hold a scale or a cross-coupling against them\n");
+    return ExitCode::kNumerics;
+  }
+  return within ? ExitCode::kDone : ExitCode::kOutOfLimits;
 }
 
 }  // namespace
@@ -147,6 +191,12 @@ void add_verify(CLI::App& app, ExitCode& exit_code) {
   command
       ->add_option("--most-times-floor", o->most_times_floor,
                    "Verdict: the largest standard deviation after, over what noise and wander leave")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  command
+      ->add_option(
+          "--most-sigmas", o->most_sigmas,
+          "Verdict: the largest scale or cross-coupling that is left, in sigmas of the calibration and of these data")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
   command->add_option("--format", o->format, "Of the result on standard output")

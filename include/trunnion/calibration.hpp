@@ -9,6 +9,7 @@
 #include "trunnion/calibration/compress.hpp"
 #include "trunnion/calibration/encoder_course.hpp"
 #include "trunnion/calibration/kalman_36.hpp"
+#include "trunnion/calibration/model_choice.hpp"
 #include "trunnion/calibration/multi_position_solve.hpp"
 #include "trunnion/calibration/noise_estimate.hpp"
 #include "trunnion/calibration/observability.hpp"

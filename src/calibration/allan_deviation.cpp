@@ -55,15 +55,16 @@ void add_chunk(const std::vector<double>& x, const std::vector<std::size_t>& m, 
 }
 
 /// Degrees of freedom of eq. (1) from n points of x, by the noise that the slope of log sigma against log tau shows.
-/// NIST SP 1065, table 5.
-double degrees_of_freedom(double slope, double n, double m) {
+/// NIST SP 1065, table 5. White phase noise, of which a long tau would have as many as a short one, is believed only
+/// where every shorter tau shows it too: @p steep.
+double degrees_of_freedom(double slope, bool steep, double n, double m) {
   const double white_phase = (n + 1.0) * (n - 2.0 * m) / (2.0 * (n - m));
   const double white = (3.0 * (n - 1.0) / (2.0 * m) - 2.0 * (n - 2.0) / n) * 4.0 * m * m / (4.0 * m * m + 5.0);
   const double flicker =
       m == 1.0 ? 2.0 * (n - 2.0) / (2.3 * n - 4.9) * (n - 2.0) : 5.0 * n * n / (4.0 * m * (n + 3.0 * m));
   const double walk =
       (n - 2.0) / m * ((n - 1.0) * (n - 1.0) - 3.0 * m * (n - 1.0) + 4.0 * m * m) / ((n - 3.0) * (n - 3.0));
-  const double freedom = slope < -0.75 ? white_phase : slope < -0.25 ? white : slope < 0.25 ? flicker : walk;
+  const double freedom = steep ? white_phase : slope < -0.25 ? white : slope < 0.25 ? flicker : walk;
   return std::max(freedom, 1.0);
 }
 
@@ -74,7 +75,7 @@ Eigen::Matrix<double, Terms, 1> non_negative_fit(const Eigen::Matrix<double, Eig
   using Vector = Eigen::Matrix<double, Terms, 1>;
   Vector best = Vector::Zero();
   misfit = b.squaredNorm();
-  for (unsigned set = 1; set < (1U << Terms); ++set) {
+  for (unsigned set = 1; set < (1U << static_cast<unsigned>(Terms)); ++set) {
     std::array<Eigen::Index, static_cast<std::size_t>(Terms)> column{};
     Eigen::Index count = 0;
     for (int i = 0; i < Terms; ++i) {
@@ -99,9 +100,43 @@ Eigen::Matrix<double, Terms, 1> non_negative_fit(const Eigen::Matrix<double, Eig
   return best;
 }
 
-/// One over 1 sigma of a point's variance.
-double weight_of(const AllanPoint& point) {
-  return std::sqrt(0.5 * point.freedom) / std::max(point.deviation * point.deviation, 1e-300);
+/// -2 log of the likelihood of the points where the variances are @p model, up to a constant: each is chi-square.
+double deviance(const std::vector<AllanPoint>& curve, const Eigen::VectorXd& model) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < curve.size(); ++i) {
+    const double m = std::max(model(static_cast<Eigen::Index>(i)), 1e-300);
+    sum += curve[i].freedom * (std::log(m) + curve[i].deviation * curve[i].deviation / m);
+  }
+  return sum;
+}
+
+/// Coefficients of the columns of @p shape, not negative, by weights of the model's own variance: those of the measured
+/// one would believe most in what came out low by chance.
+template <int Terms>
+Eigen::Matrix<double, Terms, 1> most_likely(const std::vector<AllanPoint>& curve,
+                                            const Eigen::Matrix<double, Eigen::Dynamic, Terms>& shape,
+                                            Eigen::VectorXd& model) {
+  constexpr int kRounds = 20;
+  const auto rows = static_cast<Eigen::Index>(curve.size());
+  Eigen::VectorXd variance(rows);
+  for (Eigen::Index i = 0; i < rows; ++i) variance(i) = std::pow(curve[static_cast<std::size_t>(i)].deviation, 2.0);
+  model = variance;
+  Eigen::Matrix<double, Terms, 1> c;
+  for (int round = 0; round < kRounds; ++round) {
+    Eigen::Matrix<double, Eigen::Dynamic, Terms> A = shape;
+    Eigen::VectorXd b(rows);
+    for (Eigen::Index i = 0; i < rows; ++i) {
+      const double weight = std::sqrt(0.5 * curve[static_cast<std::size_t>(i)].freedom) / std::max(model(i), 1e-300);
+      A.row(i) *= weight;
+      b(i) = weight * variance(i);
+    }
+    double misfit = 0.0;
+    c = non_negative_fit<Terms>(A, b, misfit);
+    // where no term reaches, the next round needs a weight all the same
+    model = (shape * c).cwiseMax(1e-3 * variance);
+  }
+  model = shape * c;
+  return c;
 }
 
 double wander_shape(double tau, double T) {
@@ -151,6 +186,7 @@ std::vector<AllanPoint> allan_deviation(std::vector<double> readings, double per
     curve[j].tau = step * period;
     curve[j].deviation = std::sqrt(sum[j] / (2.0 * static_cast<double>(n - 2 * m[j]))) / step;
   }
+  bool steep = true;
   for (std::size_t j = 0; j < m.size(); ++j) {
     AllanPoint& point = curve[j];
     const std::size_t a = j == 0 ? 0 : j - 1;
@@ -158,7 +194,8 @@ std::vector<AllanPoint> allan_deviation(std::vector<double> readings, double per
     const double slope = b > a && curve[a].deviation > 0.0 && curve[b].deviation > 0.0
                              ? std::log(curve[b].deviation / curve[a].deviation) / std::log(curve[b].tau / curve[a].tau)
                              : -0.5;
-    point.freedom = degrees_of_freedom(slope, static_cast<double>(n), static_cast<double>(m[j]));
+    steep = steep && slope < -0.75;
+    point.freedom = degrees_of_freedom(slope, steep, static_cast<double>(n), static_cast<double>(m[j]));
     const double high = chi_square_quantile(point.freedom, 1.0);
     const double low = std::max(chi_square_quantile(point.freedom, -1.0), 1e-3 * point.freedom);
     point.low = point.deviation * std::sqrt(point.freedom / high);
@@ -169,39 +206,38 @@ std::vector<AllanPoint> allan_deviation(std::vector<double> readings, double per
 
 NoiseTerms fit_noise_terms(const std::vector<AllanPoint>& curve) {
   const auto rows = static_cast<Eigen::Index>(curve.size());
-  Eigen::Matrix<double, Eigen::Dynamic, 5> A(rows, 5);
-  Eigen::VectorXd b(rows);
+  Eigen::Matrix<double, Eigen::Dynamic, 5> shape(rows, 5);
   for (Eigen::Index i = 0; i < rows; ++i) {
-    const AllanPoint& point = curve[static_cast<std::size_t>(i)];
-    const double tau = point.tau;
-    A.row(i) << 3.0 / (tau * tau), 1.0 / tau, 2.0 * std::log(2.0) / kPi, tau / 3.0, tau * tau / 2.0;
-    A.row(i) *= weight_of(point);
-    b(i) = point.deviation * point.deviation * weight_of(point);
+    const double tau = curve[static_cast<std::size_t>(i)].tau;
+    shape.row(i) << 3.0 / (tau * tau), 1.0 / tau, 2.0 * std::log(2.0) / kPi, tau / 3.0, tau * tau / 2.0;
   }
-  double misfit = 0.0;
-  const Eigen::Matrix<double, 5, 1> c = non_negative_fit<5>(A, b, misfit).cwiseSqrt();
+  Eigen::VectorXd model;
+  const Eigen::Matrix<double, 5, 1> c = most_likely<5>(curve, shape, model).cwiseSqrt();
   return {c(0), c(1), c(2), c(3), c(4)};
 }
 
 TriadNoise fit_sheet_noise(const std::vector<AllanPoint>& curve) {
+  constexpr double kStep = 1.05;      // of the correlation times that are tried
+  constexpr double kWorthIt = 9.21;   // deviance that a wander takes off: by chance one time in a hundred
+  constexpr double kShortest = 50.0;  // samples: what is correlated for less is the shape of the white noise
   const auto rows = static_cast<Eigen::Index>(curve.size());
-  TriadNoise best;
-  double least = std::numeric_limits<double>::infinity();
-  constexpr double kStep = 1.05;
-  for (double T = 2.0 * curve.front().tau; T <= curve.back().tau; T *= kStep) {
-    Eigen::Matrix<double, Eigen::Dynamic, 2> A(rows, 2);
-    Eigen::VectorXd b(rows);
+  Eigen::VectorXd model;
+  Eigen::Matrix<double, Eigen::Dynamic, 1> white(rows, 1);
+  for (Eigen::Index i = 0; i < rows; ++i) white(i) = 1.0 / curve[static_cast<std::size_t>(i)].tau;
+  const double density = std::sqrt(most_likely<1>(curve, white, model)(0));
+  TriadNoise best{density, 0.0, 1.0};
+  double least = deviance(curve, model) - kWorthIt;
+  for (double T = kShortest * curve.front().tau; T <= curve.back().tau; T *= kStep) {
+    Eigen::Matrix<double, Eigen::Dynamic, 2> shape(rows, 2);
     for (Eigen::Index i = 0; i < rows; ++i) {
-      const AllanPoint& point = curve[static_cast<std::size_t>(i)];
-      A.row(i) << 1.0 / point.tau, wander_shape(point.tau, T);
-      A.row(i) *= weight_of(point);
-      b(i) = point.deviation * point.deviation * weight_of(point);
+      const double tau = curve[static_cast<std::size_t>(i)].tau;
+      shape.row(i) << 1.0 / tau, wander_shape(tau, T);
     }
-    double misfit = 0.0;
-    const Eigen::Vector2d c = non_negative_fit<2>(A, b, misfit);
-    if (!(misfit < least)) continue;
-    least = misfit;
-    best = {std::sqrt(c(0)), std::sqrt(c(1)), c(1) > 0.0 ? T : 1.0};
+    const Eigen::Vector2d c = most_likely<2>(curve, shape, model);
+    const double now = deviance(curve, model);
+    if (!(now < least) || !(c(1) > 0.0)) continue;
+    least = now;
+    best = {std::sqrt(c(0)), std::sqrt(c(1)), T};
   }
   return best;
 }

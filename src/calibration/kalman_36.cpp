@@ -188,7 +188,7 @@ class Pass {
   }
 
   /// Eq. (2) over one step.
-  void predict(double t, Rows on_phi, Rows on_velocity, const Vec3<double>& push) {
+  void predict(double t, const Rows& on_phi, Rows on_velocity, const Vec3<double>& push) {
     const Mat3<double> S = skew(push);
     on_velocity += 0.5 * S * on_phi;
     Covariance Phi = Covariance::Identity();
@@ -316,16 +316,16 @@ Kalman36Result Kalman36::finish(const Site& site, const Kalman36Options& options
     result.covariance = pass.covariance().bottomRightCorner<kStates - 6, kStates - 6>();
     if (!x.allFinite()) throw Error(ExitCode::kNumerics, name_ + ": the system-level filter diverged");
     // (I + M) <- (I + M)(I + dM), b <- b + (I + M) db
-    Mat3<double> dG;
-    Mat3<double> dA = Mat3<double>::Zero();
-    for (int i = 0; i < 9; ++i) dG(i / 3, i % 3) = x(kGyroMatrix + i);
+    Mat3<double> dM_g;
+    Mat3<double> dM_a = Mat3<double>::Zero();
+    for (int i = 0; i < 9; ++i) dM_g(i / 3, i % 3) = x(kGyroMatrix + i);
     for (std::size_t e = 0; e < kUpper.size(); ++e)
-      dA(kUpper[e][0], kUpper[e][1]) = x(kAccelMatrix + static_cast<int>(e));
+      dM_a(kUpper[e][0], kUpper[e][1]) = x(kAccelMatrix + static_cast<int>(e));
     InertialUnit<double>& unit = result.unit;
     unit.gyro.bias += unit.gyro.matrix() * x.segment<3>(kGyroBias);
     unit.accel.bias += unit.accel.matrix() * x.segment<3>(kAccelBias);
-    unit.gyro.M = (unit.gyro.matrix() * (Mat3<double>::Identity() + dG)) - Mat3<double>::Identity();
-    unit.accel.M = (unit.accel.matrix() * (Mat3<double>::Identity() + dA)) - Mat3<double>::Identity();
+    unit.gyro.M = (unit.gyro.matrix() * (Mat3<double>::Identity() + dM_g)) - Mat3<double>::Identity();
+    unit.accel.M = (unit.accel.matrix() * (Mat3<double>::Identity() + dM_a)) - Mat3<double>::Identity();
     unit.accel.quadratic += x.segment<3>(kQuadratic);
     result.lever[0] += x.segment<3>(kLeverY);
     result.lever[1] += x.segment<3>(kLeverZ);

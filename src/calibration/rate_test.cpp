@@ -61,7 +61,7 @@ std::vector<Seen> look(const TableRecording& recording, const Rig& rig, const Si
       for (std::size_t a = 0; a < 2; ++a) rate[a] += window.weight[n] * at[a].rate;
     }
     seen.azimuth_rate = rate[0];
-    seen.direction = rate[1] > 0.0 ? 1 : -1;
+    seen.direction = std::abs(rate[1]) < kStill ? 0 : rate[1] > 0.0 ? 1 : -1;
     seen.kind = std::abs(rate[0]) + std::abs(rate[1]) < kStill ? Seen::Kind::kRest
                 : std::abs(rate[0]) > kTurning                 ? Seen::Kind::kAzimuth
                 : std::abs(rate[1]) > kTurning                 ? Seen::Kind::kPitch
@@ -139,7 +139,7 @@ void add_runs(const TableRecording& recording, const Rig& rig, const Site& site,
     std::vector<double> rates;
     for (std::size_t k = from; k < to; ++k) rates.push_back(seen[k].azimuth_rate);
     const double rate = median(rates);
-    for (const int direction : {1, -1}) {
+    for (const int direction : {1, -1, 0}) {
       Run run;
       double count = 0.0;
       for (std::size_t k = from; k < to; ++k) {

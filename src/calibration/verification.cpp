@@ -3,7 +3,10 @@
 
 #include "trunnion/calibration/verification.hpp"
 
+#include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "recording_model.hpp"
@@ -43,6 +46,30 @@ double floor_of(const TriadNoise& noise, double window, double duration) {
   return std::sqrt(noise.density * noise.density / window + noise.wander * noise.wander * std::max(0.0, share));
 }
 
+/// Eq. (3) of one triad. @param d differences after correction, by window; @param u true inputs
+void find_left(const std::vector<Vec3<double>>& d, const std::vector<Vec3<double>>& u, const TriadNoise& noise,
+               double window, Mat3<double>& left, Mat3<double>& sigma) {
+  constexpr double kRankLoss = 1e-12;
+  Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
+  Eigen::Matrix<double, 4, 3> right = Eigen::Matrix<double, 4, 3>::Zero();
+  for (std::size_t k = 0; k < d.size(); ++k) {
+    const Eigen::Vector4d row(u[k](0), u[k](1), u[k](2), 1.0);
+    normal += row * row.transpose();
+    right += row * d[k].transpose();
+  }
+  left.setZero();
+  sigma.setConstant(std::numeric_limits<double>::infinity());
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> eigen(normal);
+  const double floor = kRankLoss * std::max(eigen.eigenvalues()(3), std::numeric_limits<double>::min());
+  const Eigen::Matrix4d inverse = eigen.eigenvectors() *
+                                  eigen.eigenvalues().cwiseMax(floor).cwiseInverse().asDiagonal() *
+                                  eigen.eigenvectors().transpose();
+  left = (inverse * right).topRows<3>().transpose();
+  const double density =
+      noise.density * noise.density + 2.0 * noise.wander * noise.wander * noise.wander_correlation_time;
+  for (int j = 0; j < 3; ++j) sigma.col(j).setConstant(std::sqrt(density / window * inverse(j, j)));
+}
+
 }  // namespace
 
 Verification verify(const CompressedRecording& before, const CompressedRecording& after, int mount,
@@ -76,6 +103,19 @@ Verification verify(const CompressedRecording& before, const CompressedRecording
     one.after = std::sqrt(one.after);
     one.floor = floor_of(axis < 3 ? noise.gyro : noise.accel, v.window, before.figures.duration);
   }
+  std::array<std::vector<Vec3<double>>, 2> d;
+  std::array<std::vector<Vec3<double>>, 2> u;
+  std::size_t at = 0;
+  for (std::size_t k = 0; k < t.size(); ++k) {
+    while (after.windows[at].t != t[k]) ++at;
+    for (std::size_t triad = 0; triad < 2; ++triad) {
+      const Vec3<double> difference(d_after[k][3 * triad], d_after[k][3 * triad + 1], d_after[k][3 * triad + 2]);
+      d[triad].push_back(difference);
+      u[triad].push_back((triad == 0 ? after.windows[at].mean.w : after.windows[at].mean.f) - difference);
+    }
+  }
+  for (std::size_t triad = 0; triad < 2; ++triad)
+    find_left(d[triad], u[triad], triad == 0 ? noise.gyro : noise.accel, v.window, v.left[triad], v.left_sigma[triad]);
   for (std::size_t k = 0; k < t.size(); ++k) {
     v.course.emplace_back();
     v.course.back()[0] = t[k];

@@ -207,7 +207,7 @@ NavigationOutcome navigate(const TrialSettings& s, const CalibrationValues& of_c
   run.seed = kNavigationSeeds + 1000 * seed + static_cast<std::uint64_t>(number);
   run.rate = s.navigation_rate;
   run.encoder_rate = 1.0;
-  // the unit and the table of the calibration, powered on anew
+  // the unit and the table of the calibration, with other noise
   CalibrationValues truth = of_calibration;
   truth.gravity = s.site.gravity;
   truth.clock_offset = 0.0;

@@ -36,7 +36,8 @@ TableMoves read_table_moves(const std::string& path, std::size_t recordings) {
       [&](const double* v) {
         ++row;
         const double number = v[0];
-        if (number != static_cast<double>(moves.size()) && number != static_cast<double>(moves.size() + 1))
+        if (!(number >= 1.0) ||
+            (number != static_cast<double>(moves.size()) && number != static_cast<double>(moves.size() + 1)))
           fail("recording", "should go on from " + std::to_string(moves.size()) + " in steps of one");
         if (number > static_cast<double>(recordings))
           fail("recording", "the run has " + std::to_string(recordings) + " recordings");

@@ -12,6 +12,7 @@
 #include <numeric>
 #include <thread>
 
+#include "trunnion/core/error.hpp"
 #include "trunnion/core/units.hpp"
 #include "trunnion/turntable/two_axis.hpp"
 
@@ -28,6 +29,7 @@ constexpr double kRestTime = 10.0;  // s, of a block
 constexpr double kTurnTime = 20.0;
 constexpr double kSwingShare = 0.98;  // of the room that the joint leaves
 constexpr int kMostSweeps = 2;
+constexpr int kMostLonger = 12;    // times that a transition is made longer
 constexpr double kWorthIt = 1e-3;  // relative decrease of the cost
 
 /// What a mount goes through for some seconds, beginning and ending at a stand.
@@ -59,7 +61,7 @@ Blocks candidates(const Bench& bench) {
   // driven apart
   const double fastest = std::min(pitch.rate / amplitude, std::sqrt(pitch.acceleration / amplitude)) / (2.0 * kPi);
   const double rated = bench.largest_rate / amplitude / (2.0 * kPi);
-  const std::array<double, 2> frequency = {0.9 * std::min(fastest, 0.7 * rated), 0.3 * std::min(fastest, 0.7 * rated)};
+  const std::array<double, 2> frequency = {0.8 * std::min(fastest, 0.7 * rated), 0.3 * std::min(fastest, 0.7 * rated)};
   for (const double f : frequency) all.push_back({Block::Kind::kSwing, middle, 0.0, amplitude, f});
   for (const double share : {1.0, 0.6, 0.3}) {
     const double rate = share * std::min(bench.largest_rate, bench.limits[kAzimuth].rate);
@@ -98,6 +100,10 @@ std::string words(const Block& block) {
   return text;
 }
 
+bool within(const simulation::AxisPeaks& peaks, const AxisLimits& limit) {
+  return peaks.rate <= limit.rate && peaks.acceleration <= limit.acceleration;
+}
+
 /// Where the table stands.
 using Stand = std::array<double, 2>;
 
@@ -112,8 +118,19 @@ void append(const Bench& bench, const Block& block, Stand& angle, TableSequence&
     const double transition =
         std::max({simulation::transition_for(0.0, rate, bench.limits[kAzimuth]), block.amplitude > 0.0 ? 1.0 : 0.0,
                   simulation::transition_for(block.pitch - angle[kPitch], swing_rate, bench.limits[kPitch])});
-    move.transition = std::ceil(100.0 * transition) / 100.0;
-    move.duration = std::max(seconds, 2.0 * move.transition + 1.0);
+    // a swing that fades in while the axis steps asks for more than each alone
+    move.transition = transition;
+    for (int longer = 0; longer < kMostLonger; ++longer) {
+      move.transition = std::ceil(100.0 * move.transition) / 100.0;
+      move.duration = std::max(seconds, 2.0 * move.transition + 1.0);
+      TableMove stand{0.0, 1.0, {}};
+      for (std::size_t a = 0; a < 2; ++a) stand.axis[a].angle = angle[a];
+      const simulation::TableMotion motion = simulation::motion_of({stand, move}, bench.limits);
+      if (within(simulation::peaks_of(motion.azimuth, 0.0, move), bench.limits[kAzimuth]) &&
+          within(simulation::peaks_of(motion.pitch, 0.0, move), bench.limits[kPitch]))
+        break;
+      move.transition *= 1.25;
+    }
     angle[kAzimuth] = std::remainder(angle[kAzimuth] + rate * (move.duration - move.transition), 2.0 * kPi);
     angle[kPitch] = block.pitch;
     moves.push_back(move);
@@ -175,24 +192,27 @@ double wanted_of(const Parameter& p, const WantedSigmas& wanted) {
   return wanted[static_cast<std::size_t>(p.kind)] / p.in_unit;
 }
 
-/// Eq. (1).
-double cost_of(const Eigen::VectorXd& sigma, const Eigen::VectorXd& wanted) {
-  double sum = 0.0;
-  int count = 0;
-  for (Eigen::Index i = 0; i < sigma.size(); ++i) {
-    if (!std::isfinite(wanted(i))) continue;
-    sum += std::pow(std::min(sigma(i) / wanted(i), 1e6), kPower);
-    ++count;
-  }
-  return count == 0 ? 0.0 : std::pow(sum / count, 1.0 / kPower);
-}
-
 double worst_of(const Eigen::VectorXd& sigma, const Eigen::VectorXd& wanted) {
   double worst = 0.0;
   for (Eigen::Index i = 0; i < sigma.size(); ++i) {
     if (std::isfinite(wanted(i))) worst = std::max(worst, sigma(i) / wanted(i));
   }
   return worst;
+}
+
+/// Eq. (1).
+double cost_of(const Eigen::VectorXd& sigma, const Eigen::VectorXd& wanted) {
+  // about the worst, so that no power leaves what a double holds
+  const double worst = worst_of(sigma, wanted);
+  if (!(worst > 0.0) || !std::isfinite(worst)) return worst;
+  double sum = 0.0;
+  int count = 0;
+  for (Eigen::Index i = 0; i < sigma.size(); ++i) {
+    if (!std::isfinite(wanted(i))) continue;
+    sum += std::pow(sigma(i) / wanted(i) / worst, kPower);
+    ++count;
+  }
+  return worst * std::pow(sum / count, 1.0 / kPower);
 }
 
 /// One change of the blocks of one recording.
@@ -427,6 +447,9 @@ Plan search(const Bench& bench, const WantedSigmas& wanted, double time, double 
   };
   say();
   const double most = time > 0.0 ? time : longest;
+  if (search.time() > most)
+    throw Error(ExitCode::kUsage, "no plan for these mounts is shorter than " +
+                                      std::to_string(static_cast<int>(std::ceil(search.time()))) + " s");
   while ((time > 0.0 || search.worst() > 1.0) && search.grow(most - search.time())) say();
   for (int sweep = 0; sweep < kMostSweeps && search.exchange(time > 0.0 ? time : search.time(), say); ++sweep) {
   }

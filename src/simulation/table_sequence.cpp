@@ -18,7 +18,7 @@ namespace {
 constexpr double kPeakRate = 1.875;                      // of a move over its mean rate
 const double kPeakAcceleration = 10.0 / std::sqrt(3.0);  // of a move, over d / T^2
 constexpr double kStands = 1e-12;                        // rad: no step
-constexpr double kSlack = 1e-9;                          // relative, of a limit that a plan may touch
+constexpr double kSlack = 1e-3;  // relative, of a limit that a plan may touch: it is looked at in steps
 
 /// From @p from to @p to, the short way where the axis has no end.
 double step_to(double from, double to, const AxisLimits& limits) {
@@ -84,52 +84,63 @@ double transition_for(double step, double rate, const AxisLimits& limits) {
 
 void check_limits(const TableSequence& sequence, const TableLimits& limits, const std::string& name) {
   static constexpr std::array<const char*, 2> kAxisName = {"azimuth", "pitch"};
-  std::array<double, 2> angle{};
+  double t = 0.0;
+  for (std::size_t i = 0; i < sequence.size(); ++i) {
+    const TableMove& move = sequence[i];
+    const bool stands = i == 0 && move.duration == 0.0;
+    const bool fades = !move.is_rest();
+    if (!stands && (!(move.duration > 0.0) || !(move.transition > 0.0) ||
+                    (fades ? 2.0 : 1.0) * move.transition > move.duration * (1.0 + kSlack))) {
+      throw Error(ExitCode::kInput,
+                  name + ": move " + std::to_string(i + 1) + ": its duration has no room for its transitions");
+    }
+  }
+  const TableMotion motion = motion_of(sequence, limits);
   for (std::size_t i = 0; i < sequence.size(); ++i) {
     const TableMove& move = sequence[i];
     for (std::size_t a = 0; a < 2; ++a) {
-      const AxisCommand& axis = move.axis[a];
+      const AxisPeaks peaks = peaks_of(a == kAzimuth ? motion.azimuth : motion.pitch, t, move);
       const AxisLimits& limit = limits[a];
       const auto fail = [&](const char* what, double value, double bound, const char* unit) {
         char text[160];
         std::snprintf(text, sizeof text, ": move %zu: the %s would %s %.6g %s, its limit is %.6g", i + 1, kAxisName[a],
-                      what, value, unit, bound);
+                      what, value / kRadPerDeg, unit, bound / kRadPerDeg);
         throw Error(ExitCode::kInput, name + text);
       };
-      const auto within = [&](double lowest, double highest) {
-        if (limit.endless()) return;
+      if (!limit.endless()) {
         const double slack = kSlack * (limit.highest - limit.lowest);
-        if (lowest < limit.lowest - slack) fail("reach", lowest / kRadPerDeg, limit.lowest / kRadPerDeg, "deg");
-        if (highest > limit.highest + slack) fail("reach", highest / kRadPerDeg, limit.highest / kRadPerDeg, "deg");
-      };
-      if (i == 0 && move.duration == 0.0) {
-        angle[a] = axis.angle;
-        within(axis.angle, axis.angle);
-        continue;
+        if (peaks.lowest < limit.lowest - slack) fail("reach", peaks.lowest, limit.lowest, "deg");
+        if (peaks.highest > limit.highest + slack) fail("reach", peaks.highest, limit.highest, "deg");
       }
-      const bool ramps = axis.rate != 0.0 || axis.amplitude != 0.0;
-      if (!(move.duration > 0.0) || !(move.transition > 0.0) ||
-          (ramps ? 2.0 : 1.0) * move.transition > move.duration * (1.0 + kSlack)) {
-        throw Error(ExitCode::kInput,
-                    name + ": move " + std::to_string(i + 1) + ": its duration has no room for its transitions");
-      }
-      const double step = step_to(angle[a], axis.angle, limit);
-      angle[a] += step;
-      const double swept = axis.rate * (move.duration - move.transition);
-      within(std::min(angle[a], angle[a] + swept) - std::abs(axis.amplitude),
-             std::max(angle[a], angle[a] + swept) + std::abs(axis.amplitude));
-      angle[a] += swept;
-      const double w = 2.0 * kPi * axis.frequency;
-      const double rate =
-          kPeakRate * std::abs(step) / move.transition + std::abs(axis.rate) + std::abs(axis.amplitude) * w;
-      if (rate > limit.rate * (1.0 + kSlack)) fail("turn at", rate / kRadPerDeg, limit.rate / kRadPerDeg, "deg/s");
-      const double acceleration = std::max(kPeakAcceleration * std::abs(step) / (move.transition * move.transition) +
-                                               kPeakRate * std::abs(axis.rate) / move.transition,
-                                           std::abs(axis.amplitude) * w * w);
-      if (acceleration > limit.acceleration * (1.0 + kSlack))
-        fail("accelerate by", acceleration / kRadPerDeg, limit.acceleration / kRadPerDeg, "deg/s^2");
+      if (peaks.rate > limit.rate * (1.0 + kSlack)) fail("turn at", peaks.rate, limit.rate, "deg/s");
+      if (peaks.acceleration > limit.acceleration * (1.0 + kSlack))
+        fail("accelerate by", peaks.acceleration, limit.acceleration, "deg/s^2");
     }
+    t += move.duration;
   }
+}
+
+AxisPeaks peaks_of(const AxisCourse& course, double t, const TableMove& move) {
+  AxisPeaks peaks;
+  peaks.lowest = peaks.highest = course.angle(t);
+  if (move.duration == 0.0) return peaks;
+  // an oscillation in forty steps, a transition in a hundred
+  double step = move.transition / 100.0;
+  for (const AxisCommand& axis : move.axis) {
+    if (axis.frequency > 0.0) step = std::min(step, 1.0 / (40.0 * axis.frequency));
+  }
+  const double quiet = move.is_rest() ? move.transition : move.duration;
+  const double h = 0.01 * step;
+  for (double at = 0.0; at <= quiet; at += step) {
+    const double angle = course.angle(t + at);
+    peaks.lowest = std::min(peaks.lowest, angle);
+    peaks.highest = std::max(peaks.highest, angle);
+    peaks.rate = std::max(peaks.rate, std::abs(course.rate(t + at)));
+    if (at > h && at < quiet - h)
+      peaks.acceleration =
+          std::max(peaks.acceleration, std::abs(course.rate(t + at + h) - course.rate(t + at - h)) / (2.0 * h));
+  }
+  return peaks;
 }
 
 TableSequence experiment(double lowest, double highest, int variant) {
@@ -177,7 +188,8 @@ TableSequence design_run(const AxisLimits& pitch) {
       moves.push_back({kHold, 3.0, {stand(angle[kAzimuth]), stand(middle)}});
     }
     for (int step = 0; step < 10; ++step) {
-      const double rate = (step % 2 == 0 ? 5.0 : -5.0) * (step / 2 + 1) * kRadPerDeg;
+      const int rate_number = step / 2;
+      const double rate = (step % 2 == 0 ? 5.0 : -5.0) * (rate_number + 1) * kRadPerDeg;
       TableMove move{kHold, kRamp, {stand(angle[kAzimuth]), stand(angle[kPitch])}};
       if (axis == kPitch && !pitch.endless()) {
         // the largest swing that the joint has room for, or one that takes ten seconds
@@ -263,7 +275,8 @@ TableSequence whole_turns(double dwell, double rate) {
   TableSequence moves = {{0.0, 1.0, {stand(0.0), stand(0.0)}}};
   for (int position = 0; position < 12; ++position) {
     const double outer = 0.5 * kPi * (position % 4);
-    const double inner = 0.5 * kPi * (position / 4);
+    const int quarter = position / 4;
+    const double inner = 0.5 * kPi * quarter;
     moves.push_back({position == 0 ? dwell : dwell + transition, transition, {stand(outer), stand(inner)}});
     const double direction = position % 4 < 2 ? 1.0 : -1.0;
     TableMove whole{time, kRamp, {stand(outer), stand(inner)}};

@@ -94,6 +94,28 @@ TEST(AllanDeviation, FitGivesBackTheTermsOfAnExactCurve) {
   EXPECT_NEAR(found.ramp / truth.ramp, 1.0, 1e-2);
 }
 
+/// Short recordings of white noise are not drawn down by a long tau that came out low: over 60 of them.
+TEST(AllanDeviation, WhiteNoiseIsFoundInShortRecordings) {
+  double lowest = 10.0;
+  double highest = 0.0;
+  double mean = 0.0;
+  int wandering = 0;
+  constexpr int kRuns = 60;
+  for (std::uint64_t seed = 1; seed <= kRuns; ++seed) {
+    const TriadNoise found = fit_sheet_noise(allan_deviation(white(50000, 1.0, 0.01, 100 + seed), 0.01));
+    lowest = std::min(lowest, found.density);
+    highest = std::max(highest, found.density);
+    mean += found.density / kRuns;
+    wandering += found.wander > 0.0 ? 1 : 0;
+  }
+  std::printf("[ FIGURE   ] white noise of 500 s, 60 times: %.3f on average, %.3f to %.3f; a wander in %d\n", mean,
+              lowest, highest, wandering);
+  EXPECT_NEAR(mean, 1.0, 0.01);
+  EXPECT_GT(lowest, 0.95);
+  EXPECT_LT(highest, 1.05);
+  EXPECT_LE(wandering, 6);
+}
+
 /// White noise and wander of a simulated day come out within what a day can tell.
 TEST(AllanDeviation, SheetNoiseOfASimulatedUnit) {
   constexpr double kPeriod = 0.1;

@@ -59,6 +59,7 @@ TEST(TableMoves, AreRefusedByLineAndColumn) {
   refused("1,10,1,0,0,0,0,0,0,0,0\n1,0,1,0,0,0,0,0,0,0,0\n", "only the first row says where it stands");
   refused("1,10,1,0,0,5,0,0,0,0,0\n", "frequency: of a swing should be positive");
   refused("1,10,1,0,0,nan,0,0,0,0,0\n", "azimuth_swing");
+  refused("0,0,1,0,0,0,0,0,0,0,0\n", "moves.csv:2: recording: should go on from 0");
   refused("1,10,1,0,0,0\n", "row too short");
 }
 

@@ -9,10 +9,11 @@
 ///   (3)
 ///
 /// Q: quantisation, N: white noise, B: bias instability, K: rate random walk, R: ramp; s, T: Gauss-Markov wander as a
-/// sensor sheet states it. Both are fitted without negative terms, each tau weighed by its degrees of freedom; that
-/// neighbouring taus share data is not in the weights. Limits are 1 sigma of chi-square with those degrees of freedom
-/// after the noise that the local slope shows. IEEE Std 952-1997, annex C; Riley, Handbook of Frequency Stability
-/// Analysis, NIST SP 1065 (2008), sections 5.2 and 5.4; docs/theory/noise.md.
+/// sensor sheet states it. Both are fitted without negative terms by maximum likelihood, each tau chi-square with its
+/// degrees of freedom; that neighbouring taus share data is not in it. A wander that takes off less deviance than
+/// chance does one time in a hundred is none. Limits are 1 sigma of chi-square with those degrees of freedom after the
+/// noise that the local slope shows. IEEE Std 952-1997, annex C; Riley, Handbook of Frequency Stability Analysis, NIST
+/// SP 1065 (2008), sections 5.2 and 5.4; docs/theory/noise.md.
 
 #pragma once
 

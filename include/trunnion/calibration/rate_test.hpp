@@ -10,8 +10,9 @@
 ///
 /// The input rate comes sample by sample from both encoders through the mount of the drawing, and is then averaged:
 /// with the pitch swinging by A about the level the azimuth's rate along the vertical case axis is on average W J_0(A).
-/// Rests taken off, bias and the Earth's rate go. What a method of this kind does not know, the errors of fixture, axes
-/// and encoders, it takes for the unit's. GJB 2426A; IEEE Std 1431-2004, sec. 12; docs/theory/comparison.md, eq. 1-3.
+/// Rests taken off, the bias goes, and forward and backward over one arc the Earth's rate. What a method of this kind
+/// does not know, the errors of fixture, axes and encoders, it takes for the unit's. GJB 2426A; IEEE Std 1431-2004,
+/// sec. 12; docs/theory/comparison.md, eq. 1-3.
 
 #pragma once
 

@@ -6,8 +6,12 @@
 ///   d = mean of the window's samples - C_bp input(rig, encoders),   sd^2 = mean d^2 - (mean d)^2           ... (1)
 ///   floor^2 = N^2 / T + wander^2 (1 - 2 tau / D (1 - tau / D (1 - exp(-D / tau))))                          ... (2)
 ///
+///   d = c + dM u + noise,   sigma(dM_ij) = sqrt((N^2 + 2 wander^2 tau) / T) sqrt((X^T X)^-1_jj)                ... (3)
+///
 /// (2): what white noise in windows of T and the wander about its own mean over a recording of D leave; no calibration
-/// goes below. The table is the calibrated one before and after. docs/theory/comparison.md, eq. 7-8.
+/// goes below. (3): what of the matrix is left, by least squares on the true input u, the wander taken for white of its
+/// density at zero frequency: a deviation that noise hides in a window shows there. The table is the calibrated one
+/// before and after. docs/theory/comparison.md, eq. 7-9.
 
 #pragma once
 
@@ -32,6 +36,8 @@ struct AxisVerification {
 
 struct Verification {
   std::array<AxisVerification, 6> axis;
+  std::array<Mat3<double>, 2> left;        ///< dM of eq. (3), of gyros and accelerometers
+  std::array<Mat3<double>, 2> left_sigma;  ///< infinite where these data do not tell
   long long windows = 0;
   double window = 0.0;                         ///< s
   std::vector<std::array<double, 13>> course;  ///< t, six differences before, six after: for a picture

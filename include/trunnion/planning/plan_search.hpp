@@ -60,6 +60,7 @@ using SearchProgress = std::function<void(double time, double worst)>;
 
 /// The least time for @p wanted, or the best for @p time [s], whole of all recordings (0: as needed).
 /// @return a plan that does not reach @p wanted where @p longest [s] does not
+/// @throws Error (usage) where the shortest plan there is is longer than that
 Plan search(const Bench& bench, const WantedSigmas& wanted, double time, double longest,
             const SearchProgress& progress = {});
 

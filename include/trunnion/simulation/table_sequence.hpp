@@ -33,6 +33,15 @@ TableMotion motion_of(const TableSequence& sequence, const TableLimits& limits =
 /// transition that its duration has no room for. @param name of the sequence, for the message
 void check_limits(const TableSequence& sequence, const TableLimits& limits, const std::string& name);
 
+/// What one axis reaches during a move that begins at @p t [s].
+struct AxisPeaks {
+  double lowest = 0.0;  ///< rad
+  double highest = 0.0;
+  double rate = 0.0;  ///< rad/s
+  double acceleration = 0.0;
+};
+AxisPeaks peaks_of(const AxisCourse& course, double t, const TableMove& move);
+
 /// The shortest transition [s] in which an axis takes a step and a change of rate, eq. (1).
 double transition_for(double step, double rate, const AxisLimits& limits);
 
