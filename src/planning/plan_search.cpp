@@ -295,8 +295,11 @@ class Search {
         evaluate(trials);
         const Trial* best = nullptr;
         double least = cost() * (1.0 - kWorthIt);
+        // a lower cost may have a higher worst: what is reached is not given up
+        const double reached = std::max(1.0, worst());
         for (const Trial& trial : trials) {
           if (time() - seconds_[r] + trial.seconds > longest || !(trial.cost < least)) continue;
+          if (worst_with(trial) > reached) continue;
           least = trial.cost;
           best = &trial;
         }
