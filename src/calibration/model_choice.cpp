@@ -73,6 +73,7 @@ double unseen(const std::vector<TableRecording>& held_out, const Rig& rig, const
               const TableSolveOptions& options, const Solution& solution) {
   double chi_square = 0.0;
   std::vector<int> mounts;
+  mounts.reserve(held_out.size());
   for (const TableRecording& recording : held_out) mounts.push_back(recording.mount);
   const Layout layout(layout_request(options, rig, mounts, 1.0));
   for (std::size_t r = 0; r < held_out.size(); ++r) {
