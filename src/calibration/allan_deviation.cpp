@@ -10,6 +10,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <system_error>
 #include <thread>
 
 #include "trunnion/core/chi_square.hpp"
@@ -168,8 +169,12 @@ std::vector<AllanPoint> allan_deviation(std::vector<double> readings, double per
     for (std::size_t chunk = next++; chunk < chunks; chunk = next++) add_chunk(x, m, chunk, part[chunk]);
   };
   std::vector<std::thread> threads;
-  for (std::size_t t = 1; t < std::min<std::size_t>(chunks, std::max(1U, std::thread::hardware_concurrency())); ++t)
-    threads.emplace_back(work);
+  try {
+    for (std::size_t t = 1; t < std::min<std::size_t>(chunks, std::max(1U, std::thread::hardware_concurrency())); ++t)
+      threads.emplace_back(work);
+  } catch (const std::system_error&) {
+    // no more threads to be had: those there are do the work
+  }
   work();
   for (std::thread& thread : threads) thread.join();
   std::vector<double> sum(m.size());
