@@ -111,13 +111,11 @@ class Pass {
     sample_.reserve(data_.samples.size());
     for (const InertialSample<double>& reading : data_.samples) sample_.push_back(correction_.correct(reading));
     if (lever_[0].isZero(0.0) && lever_[1].isZero(0.0)) return;
+    // it hangs on rates alone, which stay
     for (std::size_t k = 0; k < sample_.size(); ++k) {
       const Mat3<double> A = size_effect(k);
-      size_.push_back({A.row(1).dot(lever_[0]), A.row(2).dot(lever_[1])});
-    }
-    for (std::size_t k = 0; k < sample_.size(); ++k) {
-      sample_[k].f.y() -= size_[k][0];
-      sample_[k].f.z() -= size_[k][1];
+      sample_[k].f.y() -= A.row(1).dot(lever_[0]);
+      sample_[k].f.z() -= A.row(2).dot(lever_[1]);
     }
   }
 
@@ -243,7 +241,6 @@ class Pass {
   UnitCorrection<double> correction_;
   std::array<Vec3<double>, 2> lever_;
   std::vector<InertialSample<double>> sample_;
-  std::vector<std::array<double, 2>> size_;
   Algorithm algorithm_;
   Quaternion<double> q_nb_;
   Vec3<double> v_ = Vec3<double>::Zero();

@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string>
 
 #include "recording_model.hpp"
+#include "table_problem.hpp"
 #include "trunnion/core/error.hpp"
 
 namespace trunnion::calibration {
@@ -20,13 +20,9 @@ std::vector<std::array<double, 6>> differences(const CompressedRecording& data, 
                                                const CalibrationValues& rig_values, const Rig& rig, const Site& site,
                                                std::vector<double>& t) {
   TableRecording recording{data, mount};
-  LayoutRequest request;
-  request.terms = {false, false, false};
-  for (int m = 0; m < rig.mounts; ++m) {
-    request.mounts.push_back("mount_" + std::to_string(m + 1));
-    request.mount_used.push_back(m == mount);
-  }
-  const Layout layout(request);
+  TableSolveOptions options;
+  options.terms = {false, false, false};
+  const Layout layout(layout_request(options, rig, {mount}, 1.0));
   RecordingModel model(recording, 0, rig, site, layout, rig_values.clock_offset);
   UnitNoise unit_weights;
   unit_weights.gyro.density = unit_weights.accel.density = 1.0;
@@ -57,8 +53,6 @@ void find_left(const std::vector<Vec3<double>>& d, const std::vector<Vec3<double
     normal += row * row.transpose();
     right += row * d[k].transpose();
   }
-  left.setZero();
-  sigma.setConstant(std::numeric_limits<double>::infinity());
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> eigen(normal);
   const double floor = kRankLoss * std::max(eigen.eigenvalues()(3), std::numeric_limits<double>::min());
   const Eigen::Matrix4d inverse = eigen.eigenvectors() *

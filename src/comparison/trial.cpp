@@ -97,7 +97,7 @@ Outcome rate_tested(const TrialSettings& s, const TableLog& log, bool one_mount)
 }
 
 Outcome solved(const TrialSettings& s, const simulation::TableRunSettings& run, const TableLog& log, const Rig& rig,
-               bool frame_of_the_case, CalibrationValues* found = nullptr) {
+               CalibrationValues* found = nullptr) {
   Outcome outcome;
   outcome.seconds = log.seconds;
   calibration::TableSolveOptions options;
@@ -110,7 +110,7 @@ Outcome solved(const TrialSettings& s, const simulation::TableRunSettings& run, 
   }
   const InertialUnit<double>& unit = solution.record.value.unit;
   score_aligned(unit, log.truth.unit, outcome);
-  if (frame_of_the_case) outcome.installation_deg = rms_off_diagonal(unit.gyro.M - log.truth.unit.gyro.M) / kRadPerDeg;
+  outcome.installation_deg = rms_off_diagonal(unit.gyro.M - log.truth.unit.gyro.M) / kRadPerDeg;
   if (found != nullptr) *found = solution.record.value;
   calibration::LayoutRequest request;
   request.recordings = static_cast<int>(log.recordings.size());
@@ -282,7 +282,7 @@ Trial run_trial(const TrialSettings& s, const std::vector<Method>& methods, std:
     const TableLog log = record(s, run, s.table, s.limits, [&](int) { return simulation::design_run(pitch); });
     add(Method::kTraditional, [&] { return rate_tested(s, log, true); });
     add(Method::kRateTest, [&] { return rate_tested(s, log, false); });
-    add(Method::kTwelvePosition, [&] { return solved(s, run, log, s.table, true); });
+    add(Method::kTwelvePosition, [&] { return solved(s, run, log, s.table); });
   }
   CalibrationValues truth;
   CalibrationValues found;
@@ -290,7 +290,7 @@ Trial run_trial(const TrialSettings& s, const std::vector<Method>& methods, std:
     const TableLog log = record(s, run, s.table, s.limits,
                                 [&](int m) { return simulation::experiment(pitch.lowest, pitch.highest, m); });
     truth = log.truth;
-    add(Method::kExperiment, [&] { return solved(s, run, log, s.table, true, &found); });
+    add(Method::kExperiment, [&] { return solved(s, run, log, s.table, &found); });
     for (int n = 0; n < s.navigations && trial.methods.back().second.failure.empty(); ++n)
       trial.navigations.push_back(navigate(s, truth, found, seed, n));
   }
@@ -329,7 +329,7 @@ Trial run_trial(const TrialSettings& s, const std::vector<Method>& methods, std:
   if (wanted(Method::kThreeAxis)) {
     const TableLog log =
         record(s, run, s.gimbal, TableLimits{}, [&](int) { return simulation::sixteen_positions(kDwell, kSlowTurn); });
-    add(Method::kThreeAxis, [&] { return solved(s, run, log, s.gimbal, true); });
+    add(Method::kThreeAxis, [&] { return solved(s, run, log, s.gimbal); });
   }
   return trial;
 }

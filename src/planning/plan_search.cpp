@@ -59,8 +59,7 @@ Blocks candidates(const Bench& bench) {
                                          : std::vector<double>{-1.0, -0.5, 0.0, 0.5, 1.0};
   for (const double share : shares) all.push_back({Block::Kind::kRest, middle + share * reach, 0.0, 0.0, 0.0});
   const double amplitude = kSwingShare * std::min(reach, 0.5 * kPi);
-  // the fastest swings of that amplitude that the joint takes, with room for the turn's share of nothing: the axes are
-  // driven apart
+  // the fastest swings of that amplitude that the joint takes, and slower ones
   const double fastest = std::min(pitch.rate / amplitude, std::sqrt(pitch.acceleration / amplitude)) / (2.0 * kPi);
   const double rated = bench.largest_rate / amplitude / (2.0 * kPi);
   const std::array<double, 2> frequency = {0.8 * std::min(fastest, 0.7 * rated), 0.3 * std::min(fastest, 0.7 * rated)};

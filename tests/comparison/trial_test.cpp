@@ -70,7 +70,7 @@ TEST(Trial, NavigationOfAPerfectUnitStaysWhereItIs) {
   s.run.noise.gyro.density = s.run.noise.accel.density = 1e-9;
   const Trial trial = run_trial(s, {Method::kExperiment}, 1);
   ASSERT_EQ(trial.navigations.size(), 1U) << trial.methods.front().second.failure;
-  for (const auto* error : {&trial.navigations[0].raw, &trial.navigations[0].floor}) {
+  for (const auto* error : {&trial.navigations[0].raw, &trial.navigations[0].calibrated, &trial.navigations[0].floor}) {
     std::printf("[ FIGURE   ] perfect unit, 600 s of the table's motions: %.2f m, %.2e deg\n", error->position_m,
                 error->attitude_deg);
     EXPECT_LT(error->position_m, 5.0);

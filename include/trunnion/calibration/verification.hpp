@@ -37,7 +37,7 @@ struct AxisVerification {
 struct Verification {
   std::array<AxisVerification, 6> axis;
   std::array<Mat3<double>, 2> left;        ///< dM of eq. (3), of gyros and accelerometers
-  std::array<Mat3<double>, 2> left_sigma;  ///< infinite where these data do not tell
+  std::array<Mat3<double>, 2> left_sigma;  ///< far beyond any use where these data do not tell
   long long windows = 0;
   double window = 0.0;                         ///< s
   std::vector<std::array<double, 13>> course;  ///< t, six differences before, six after: for a picture

@@ -5,8 +5,7 @@
 ///
 /// Between two angles an axis moves as axis_motion.hpp says, so that a step d within a transition T asks for
 ///
-///   rate (15/8) |d| / T,   acceleration (10/sqrt 3) |d| / T^2;   a change of rate r within T: (15/8) |r| / T    ...
-///   (1)
+///   rate (15/8) |d| / T,   acceleration (10/sqrt 3) |d| / T^2;   a change of rate r: (15/8) |r| / T        ... (1)
 
 #pragma once
 
@@ -59,8 +58,8 @@ TableSequence design_run(const AxisLimits& pitch);
 /// Rests only, at the middle of the pitch range: a run with too few turns.
 TableSequence rest_only(double lowest, double highest);
 
-/// Rests of @p dwell [s] between right-angled turns, as system-level calibration takes them: sixteen (eight turns of
-/// each axis) or nineteen positions. They need a pitch without end.
+/// Rests of @p dwell [s] between right-angled turns, as system-level calibration takes them: sixteen or
+/// nineteen positions. They need joints without end, and an outer axis that is level.
 TableSequence sixteen_positions(double dwell, double rate);
 TableSequence nineteen_positions(double dwell, double rate);
 
