@@ -8,7 +8,7 @@
 #include "../terminal.hpp"
 #include "command.hpp"
 #include "recordings.hpp"
-#include "trunnion/error_model/inertial_unit.hpp"
+#include "trunnion/error_model/stream_correction.hpp"
 #include "trunnion/io/calibration_file.hpp"
 #include "trunnion/io/csv.hpp"
 #include "trunnion/io/fault.hpp"
@@ -31,24 +31,29 @@ struct Options {
 class Corrected final : public SampleSink {
  public:
   using Write = std::function<void(std::int64_t, const InertialSample<double>&)>;
-  Corrected(const UnitCorrection<double>& correction, Write write)
-      : correction_(correction), write_(std::move(write)) {}
+  Corrected(const InertialUnit<double>& unit, Write write) : correction_(unit), write_(std::move(write)) {}
   void imu(std::int64_t utime, const InertialSample<double>& sample) override {
     ++samples_;
-    write_(utime, correction_.correct(sample));
+    write_(utime, correction_.correct(1e-6 * static_cast<double>(utime), sample));
+  }
+  void temperature(double celsius) override {
+    has_temperature_ = true;
+    correction_.set_temperature(celsius);
   }
   void encoder(std::int64_t, double, double) override {}
   [[nodiscard]] long long samples() const { return samples_; }
+  [[nodiscard]] bool has_temperature() const { return has_temperature_; }
 
  private:
-  const UnitCorrection<double>& correction_;
+  StreamCorrection<double> correction_;
   Write write_;
+  bool has_temperature_ = false;
   long long samples_ = 0;
 };
 
 /// Message by message as imu_correct does live; other channels are copied.
 long long apply_to_log(const io::RecordingFiles& files, const io::LcmChannels& channels, const std::string& output,
-                       const Corrector& corrector) {
+                       Corrector corrector) {
   io::LcmLogReader log(files.lcm);
   io::LcmLogWriter out(output);
   CorrectedMessages messages(files.lcm, channels);
@@ -79,11 +84,11 @@ long long apply_to_log(const io::RecordingFiles& files, const io::LcmChannels& c
 
 /// Through the same reader as solve: columns and raw counts as the run file says.
 long long apply_to_table(const Options& o, const io::RunFile& run, const io::RecordingFiles& files,
-                         const UnitCorrection<double>& correction) {
+                         const InertialUnit<double>& unit) {
   io::WholeFile out(o.output);
   out.write(io::imu_csv_header());
   std::string row;
-  Corrected sink(correction, [&](std::int64_t utime, const InertialSample<double>& sample) {
+  Corrected sink(unit, [&](std::int64_t utime, const InertialSample<double>& sample) {
     row.clear();
     io::append_imu_csv(1e-6 * static_cast<double>(utime), sample, row);
     out.write(row);
@@ -91,6 +96,9 @@ long long apply_to_table(const Options& o, const io::RunFile& run, const io::Rec
   std::vector<std::pair<std::string, std::string>> digests;
   io::read_recording(run, files, sink, digests);
   if (sink.samples() == 0) throw io::input_error(o.input, 0, "", "has no samples");
+  if (unit.thermal.order() > 0 && !sink.has_temperature())
+    std::fprintf(stderr, "%s: has terms of temperature, and the table has none (temperature_deg_c): at %s degC\n",
+                 o.calibration.c_str(), figure(unit.thermal.reference, 4).c_str());
   out.commit();
   return sink.samples();
 }
@@ -108,10 +116,7 @@ void apply(const Options& o) {
   long long samples = 0;
   if (table) {
     const InertialUnit<double> unit = io::unit_of(io::read_calibration_file(o.calibration), o.calibration, o.recording);
-    if (!unit.thermal.is_zero())
-      std::fprintf(stderr, "%s: has temperature terms, which are not applied: tables are read without temperature\n",
-                   o.calibration.c_str());
-    samples = apply_to_table(o, run, files, UnitCorrection<double>(unit));
+    samples = apply_to_table(o, run, files, unit);
   } else {
     CorrectorOptions options;
     options.calibration = o.calibration;

@@ -24,6 +24,7 @@ planning::Bench bench_of(const io::RunFile& run, const io::RigFile& rig, const s
     bench.mounts.push_back(static_cast<int>(std::find(names.begin(), names.end(), mount) - names.begin()));
   bench.limits = rig.limits;
   bench.prediction.solve = table_options(run, names);
+  bench.prediction.soak = run.soak;
   if (run.sheet.rate_hz > 0.0) bench.prediction.rate = run.sheet.rate_hz;
   return bench;
 }

@@ -72,6 +72,29 @@ std::vector<Difference> differences(const io::CalibrationFile& a, const io::Cali
          kMicroG);
   vector("accelerometer quadratic", va.unit.accel.quadratic, vb.unit.accel.quadratic, sa.unit.accel.quadratic,
          sb.unit.accel.quadratic, "ppm/(m/s^2)", 1e6);
+  vector("gyro asymmetry", va.unit.gyro.asymmetry, vb.unit.gyro.asymmetry, sa.unit.gyro.asymmetry,
+         sb.unit.gyro.asymmetry, "ppm", 1e6);
+  vector("accelerometer asymmetry", va.unit.accel.asymmetry, vb.unit.accel.asymmetry, sa.unit.accel.asymmetry,
+         sb.unit.accel.asymmetry, "ppm", 1e6);
+  for (int i = 1; i < 3; ++i)
+    vector(std::string("accelerometer ") + kName[i] + "'s place along", va.unit.accel_place.col(i),
+           vb.unit.accel_place.col(i), sa.unit.accel_place.col(i), sb.unit.accel_place.col(i), "mm", 1e3);
+  const auto thermal = [&](const char* entry, std::size_t k, ThermalErrors<double>::Orders ThermalErrors<double>::*of,
+                           Vec3<double> InertialSample<double>::*sensor, const char* unit, double in_unit) {
+    vector(std::string(entry) + " by temperature^" + std::to_string(k + 1), (va.unit.thermal.*of)[k].*sensor,
+           (vb.unit.thermal.*of)[k].*sensor, (sa.unit.thermal.*of)[k].*sensor, (sb.unit.thermal.*of)[k].*sensor,
+           (unit + std::string(k == 0 ? "/K" : "/K^" + std::to_string(k + 1))).c_str(), in_unit);
+  };
+  // polynomials about two temperatures have nothing to do with each other, entry by entry
+  if (va.unit.thermal.reference == vb.unit.thermal.reference) {
+    using Thermal = ThermalErrors<double>;
+    for (std::size_t k = 0; k < Thermal::kMostOrder; ++k) {
+      thermal("gyro bias", k, &Thermal::bias, &InertialSample<double>::w, "deg/h", kDegPerH);
+      thermal("accelerometer bias", k, &Thermal::bias, &InertialSample<double>::f, "ug", kMicroG);
+      thermal("gyro scale", k, &Thermal::scale, &InertialSample<double>::w, "ppm", 1e6);
+      thermal("accelerometer scale", k, &Thermal::scale, &InertialSample<double>::f, "ppm", 1e6);
+    }
+  }
   if (a.record.has_rig && b.record.has_rig) {
     add("base tilt about east", va.rig.tilt_x, vb.rig.tilt_x, sa.rig.tilt_x, sb.rig.tilt_x, "deg", kDeg);
     add("base tilt about north", va.rig.tilt_y, vb.rig.tilt_y, sa.rig.tilt_y, sb.rig.tilt_y, "deg", kDeg);

@@ -41,6 +41,8 @@ struct Content {
   FlashBlock block;
   UnitOutput<double> error_bound{};
   UnitScale<double> scale;
+  InertialUnit<double> unit;
+  bool beyond_second_order = false;  // terms of temperature that the coefficients do not carry
 };
 
 /// printf into @p out.
@@ -78,6 +80,8 @@ void add(std::string& out, const UnitCorrection<float>::Bend& bend) {
   out += "{";
   add(out, bend.A);
   out += ",\n     ";
+  add(out, bend.asymmetry);
+  out += ", ";
   add(out, bend.quadratic);
   out += ", ";
   add(out, bend.cubic);
@@ -106,6 +110,45 @@ std::string in_comment(const std::string& name) {
   return text;
 }
 
+/// What UnitCorrection does not carry: the unit itself, for ThermalCorrection.
+std::string unit_of_header(const InertialUnit<double>& unit, const UnitScale<double>& scale) {
+  std::string out;
+  out +=
+      "// Terms of temperature beyond the biases' second order: ThermalCorrection<float>(unit(), scale()) takes "
+      "them.\n";
+  out += "inline trunnion::InertialUnit<float> unit() {\n  trunnion::InertialUnit<float> u;\n";
+  const auto vector = [&](const std::string& of, const Vec3<double>& v) {
+    if (!v.isZero(0.0)) add(out, "  u.%s << %aF, %aF, %aF;\n", of.c_str(), v.x(), v.y(), v.z());
+  };
+  const auto matrix = [&](const std::string& of, const Mat3<double>& M) {
+    if (M.isZero(0.0)) return;
+    add(out, "  u.%s << %aF, %aF, %aF, %aF, %aF, %aF, %aF, %aF, %aF;\n", of.c_str(), M(0, 0), M(0, 1), M(0, 2), M(1, 0),
+        M(1, 1), M(1, 2), M(2, 0), M(2, 1), M(2, 2));
+  };
+  for (const auto& [name, triad] : {std::pair{"gyro", &unit.gyro}, std::pair{"accel", &unit.accel}}) {
+    const std::string of = name;
+    vector(of + ".bias", triad->bias);
+    matrix(of + ".M", triad->M);
+    vector(of + ".asymmetry", triad->asymmetry);
+    vector(of + ".quadratic", triad->quadratic);
+    vector(of + ".cubic", triad->cubic);
+  }
+  matrix("g_sensitivity", unit.g_sensitivity);
+  add(out, "  u.thermal.reference = %aF;\n", unit.thermal.reference);
+  if (std::isfinite(unit.thermal.lowest))
+    add(out, "  u.thermal.lowest = %aF;\n  u.thermal.highest = %aF;\n", unit.thermal.lowest, unit.thermal.highest);
+  for (std::size_t k = 0; k < unit.thermal.bias.size(); ++k) {
+    const std::string at = "[" + std::to_string(k) + "]";
+    vector("thermal.bias" + at + ".w", unit.thermal.bias[k].w);
+    vector("thermal.bias" + at + ".f", unit.thermal.bias[k].f);
+    vector("thermal.scale" + at + ".w", unit.thermal.scale[k].w);
+    vector("thermal.scale" + at + ".f", unit.thermal.scale[k].f);
+  }
+  add(out, "  return u;\n}\ninline trunnion::UnitScale<float> scale() { return {{%aF, %aF}, {%aF, %aF}}; }\n",
+      scale.gyro.scale, scale.gyro.zero, scale.accel.scale, scale.accel.zero);
+  return out;
+}
+
 std::string header_of(const Content& content, const Options& o, const std::string& digest) {
   const FlashBlock& block = content.block;
   std::string out;
@@ -124,17 +167,22 @@ std::string header_of(const Content& content, const Options& o, const std::strin
   } else {
     out += "// For readings in rad/s and m/s^2.\n";
   }
-  out += "inline constexpr trunnion::UnitCorrection<float>::Coefficients kUnit = {\n    ";
-  add(out, block.unit.accel);
-  out += ",\n    ";
-  add(out, block.unit.gyro);
-  out += ",\n    ";
-  add(out, block.unit.H);
-  out += ",\n    ";
-  add(out, block.unit.accel_bend);
-  out += ",\n    ";
-  add(out, block.unit.gyro_bend);
-  add(out, ",\n    %aF, %aF};\n", static_cast<double>(block.unit.reference), static_cast<double>(block.unit.is_linear));
+  if (content.beyond_second_order) {
+    out += unit_of_header(content.unit, content.scale);
+  } else {
+    out += "inline constexpr trunnion::UnitCorrection<float>::Coefficients kUnit = {\n    ";
+    add(out, block.unit.accel);
+    out += ",\n    ";
+    add(out, block.unit.gyro);
+    out += ",\n    ";
+    add(out, block.unit.H);
+    out += ",\n    ";
+    add(out, block.unit.accel_bend);
+    out += ",\n    ";
+    add(out, block.unit.gyro_bend);
+    add(out, ",\n    %aF, %aF};\n", static_cast<double>(block.unit.reference),
+        static_cast<double>(block.unit.is_linear));
+  }
   if (block.has_counts == 1) {
     const double per_count = static_cast<double>(1LL << o.fraction);
     add(out, "\n// Readings of %d bits in, corrected counts of 1/%lld out: SI = out / kGyroScale, out / kAccelScale.\n",
@@ -190,6 +238,8 @@ std::string why_not(const InertialUnit<double>& unit, const UnitScale<double>& s
   };
   judge("gyros", unit.gyro, scale.gyro);
   judge("accelerometers", unit.accel, scale.accel);
+  if (!unit.gyro.asymmetry.isZero(0.0) || !unit.accel.asymmetry.isZero(0.0)) why += " an asymmetry is float only;";
+  if (!unit.thermal.is_quadratic_bias()) why += " temperature is more than the biases' first and second order;";
   if (why.back() == ':')
     why += " g-sensitivity above an eighth of a count by a count, or all of it together too large;";
   why.pop_back();
@@ -210,6 +260,17 @@ Content content_of(const io::CalibrationFile& file, const Options& o) {
       content.block.counts = made.value().coefficients;
       content.error_bound = made.value().error_bound;
     }
+  }
+  content.unit = unit;
+  content.beyond_second_order = !unit.thermal.is_quadratic_bias();
+  if (content.beyond_second_order && !o.block.empty())
+    throw io::input_error(o.calibration, 0, "temperature",
+                          "a block holds the biases' first and second order, and there is more: write a header");
+  if (!unit.accel_place.isZero(0.0)) {
+    std::fprintf(stderr,
+                 "%s: the size effect is not in the coefficients: up to %s m/s^2 at 1 rad/s "
+                 "(error_model/size_effect.hpp)\n",
+                 o.calibration.c_str(), figure(unit.accel_place.colwise().norm().maxCoeff(), 2).c_str());
   }
   content.block.unit = UnitCorrection<float>(unit, content.scale).coefficients();
   const std::string name = file.model + (file.serial.empty() ? "" : " " + file.serial);

@@ -48,6 +48,9 @@ struct Options {
   double acceleration_deg = 100.0;
   double encoder_rate = 200.0;
   int encoder_bits = 21;
+  std::vector<double> temperatures = {-20.0, 60.0};  // degC
+  double kelvin_per_minute = 1.0;
+  int order = 3;
   std::string format = "text";
 };
 
@@ -79,6 +82,10 @@ std::unique_ptr<Setup> setup_of(const Options& o) {
     s.rig = io::read_rig(o.rig, s.run.outer_axis, s.run.inner_axis, o.mounts);
     names = s.mounts = s.rig.mounts;
   }
+  if (o.preset == "soak") {
+    s.run.soak = {o.temperatures[0], o.temperatures[1], o.kelvin_per_minute / 60.0};
+    s.run.temperature = o.order;
+  }
   if (!s.run.sheet.has_noise)
     throw Error(ExitCode::kInput, (s.run.sheet_path.empty() ? o.run : s.run.sheet_path) +
                                       ": a plan needs a sheet that states the noise: nothing is measured yet");
@@ -107,6 +114,8 @@ std::vector<simulation::TableSequence> preset(const Setup& s, const std::string&
       all.push_back(simulation::experiment(pitch.lowest, pitch.highest, static_cast<int>(r)));
     } else if (name == "design_run") {
       all.push_back(simulation::design_run(pitch));
+    } else if (name == "soak") {
+      all.push_back(simulation::soak(pitch, s.run.soak.duration(), static_cast<int>(r)));
     } else if (name == "sixteen_positions") {
       all.push_back(simulation::sixteen_positions(kDwell, kSlowTurn));
     } else if (name == "nineteen_positions") {
@@ -160,6 +169,19 @@ bool any(const planning::WantedSigmas& wanted) {
   return std::any_of(wanted.begin(), wanted.end(), [](double sigma) { return std::isfinite(sigma); });
 }
 
+/// As a run file says it.
+std::string model_of(const io::RunFile& run) {
+  std::string terms;
+  for (const auto& [name, chosen] : {std::pair{"cubic", run.cubic}, std::pair{"g_sensitivity", run.g_sensitivity},
+                                     std::pair{"quadratic", run.quadratic}, std::pair{"asymmetry", run.asymmetry},
+                                     std::pair{"size_effect", run.size_effect}}) {
+    if (chosen) terms += std::string(terms.empty() ? "" : ", ") + name;
+  }
+  if (run.temperature > 0)
+    terms += std::string(terms.empty() ? "" : ", ") + "temperature: " + std::to_string(run.temperature);
+  return "model: [" + terms + "]\n";
+}
+
 /// What imu_live is to see of each mount.
 std::string live_plan(const planning::Plan& plan) {
   double rest = 0.0;
@@ -195,7 +217,17 @@ void write_plan(const Options& o, const Setup& s, const planning::Plan& plan, co
                     ", gravity_sigma_m_s2: " + figure(s.run.site.gravity_sigma, 6) + "}\nrig: rig.urdf\n";
   if (s.run.outer_axis != "azimuth" || s.run.inner_axis != "pitch")
     run += "axes: [" + s.run.outer_axis + ", " + s.run.inner_axis + "]\n";
-  run += "sheet: sheet.yaml\nmoves: moves.csv\n" + live_plan(plan);
+  run += "sheet: sheet.yaml\nmoves: moves.csv\n" + model_of(s.run) + live_plan(plan);
+  if (!s.run.serial.empty()) run += "serial: " + nlohmann::json(s.run.serial).dump() + "\n";
+  if (!s.run.bias_per_recording) run += "bias: shared\n";
+  if (!s.run.estimate_clock_offset) run += "clock: {imu_to_encoder_offset: " + figure(s.run.clock_offset, 12) + "}\n";
+  if (s.run.soak.is_known())
+    run += "soak: {from_deg_c: " + figure(s.run.soak.from, 6) + ", to_deg_c: " + figure(s.run.soak.to, 6) +
+           ", k_per_min: " + figure(60.0 * s.run.soak.rate, 6) + "}\n";
+  if (s.run.channels.imu.map || s.run.channels.encoder.map || !s.run.columns.empty())
+    std::fprintf(stderr,
+                 "%s: its channels, lcm_types and columns are not taken over: add them to the plan's run file\n",
+                 o.run.c_str());
   std::string limits;
   for (std::size_t i = 0; i < wanted.size(); ++i) {
     if (std::isfinite(wanted[i]))
@@ -333,8 +365,10 @@ void add_plan(CLI::App& app, ExitCode& exit_code) {
   command->add_option("-o,--output", o->output, "Folder to write: run.yaml, moves.csv, rig.urdf, sheet.yaml");
   const std::vector<std::string> presets = {"experiment", "design_run", "sixteen_positions", "nineteen_positions",
                                             "whole_turns"};
+  std::vector<std::string> sequences = presets;
+  sequences.emplace_back("soak");
   CLI::Option* fixed = command->add_option("--preset", o->preset, "A known sequence instead of a designed one")
-                           ->check(CLI::IsMember(presets));
+                           ->check(CLI::IsMember(sequences));
   command->add_option("--as-good-as", o->as_good_as, "Want the sigmas of this preset, of all but the turn-on biases")
       ->check(CLI::IsMember(presets));
   command->add_option("--sigma", o->sigmas,
@@ -372,6 +406,19 @@ void add_plan(CLI::App& app, ExitCode& exit_code) {
   command->add_option("--encoder-bits", o->encoder_bits, "Of a turn; 0: exact")
       ->capture_default_str()
       ->check(CLI::Range(0, 32));
+  command->add_option("--temperatures-deg-c", o->temperatures, "Of a soak: from, to")
+      ->capture_default_str()
+      ->expected(2)
+      ->check(CLI::Range(-100.0, 300.0))
+      ->needs(fixed);
+  command->add_option("--k-per-min", o->kelvin_per_minute, "Of a soak")
+      ->capture_default_str()
+      ->check(CLI::Range(0.01, 100.0))
+      ->needs(fixed);
+  command->add_option("--order", o->order, "Of a soak: of the polynomials in temperature to be solved for")
+      ->capture_default_str()
+      ->check(CLI::Range(1, ThermalErrors<double>::kMostOrder))
+      ->needs(fixed);
   command->add_option("--format", o->format, "Of the result on standard output")
       ->capture_default_str()
       ->check(CLI::IsMember({"text", "json"}));

@@ -12,6 +12,7 @@
 #include "trunnion/calibration/compress.hpp"
 #include "trunnion/calibration/rests_and_turns.hpp"
 #include "trunnion/calibration/twelve_position_solve.hpp"
+#include "trunnion/error_model/stream_correction.hpp"
 #include "trunnion/io/run_file.hpp"
 
 namespace trunnion::app {
@@ -48,12 +49,13 @@ calibration::CompressOptions compress_options(const io::RunFile& run, const io::
 /// Each sample as it is, and corrected; both with the same encoders.
 class BeforeAndAfter final : public SampleSink {
  public:
-  BeforeAndAfter(const calibration::CompressOptions& options, const UnitCorrection<double>& correction)
-      : before(options), after(options), correction_(correction) {}
+  BeforeAndAfter(const calibration::CompressOptions& options, const InertialUnit<double>& unit)
+      : before(options), after(options), correction_(unit) {}
   void imu(std::int64_t utime, const InertialSample<double>& sample) override {
     before.imu(utime, sample);
-    after.imu(utime, correction_.correct(sample));
+    after.imu(utime, correction_.correct(1e-6 * static_cast<double>(utime), sample));
   }
+  void temperature(double celsius) override { correction_.set_temperature(celsius); }
   void encoder(std::int64_t utime, double azimuth, double pitch) override {
     before.encoder(utime, azimuth, pitch);
     after.encoder(utime, azimuth, pitch);
@@ -62,7 +64,7 @@ class BeforeAndAfter final : public SampleSink {
   calibration::Compressor after;
 
  private:
-  const UnitCorrection<double>& correction_;
+  StreamCorrection<double> correction_;
 };
 
 /// Reads and compresses every recording, on as many threads as the machine has. @p mounts: names, in the rig's order

@@ -97,11 +97,10 @@ Section residuals(const io::RunFile& run, const io::RigFile& rig, const io::Cali
       "correction, with the floor that noise and wander leave. These recordings were used: a recording that was "
       "not is held against the calibration by imu_calibrate verify."};
   Table table{{"recording", "axis", "before", "after", "floor", "after / floor", "unit"}, {}};
-  const UnitCorrection<double> correction(file.record.value.unit);
   std::vector<Picture> pictures;
   for (std::size_t r = 0; r < run.recordings.size(); ++r) {
     progress.show("residuals of " + run.recordings[r].name());
-    BeforeAndAfter both(compress_options(run, run.recordings[r]), correction);
+    BeforeAndAfter both(compress_options(run, run.recordings[r]), file.record.value.unit);
     std::vector<std::pair<std::string, std::string>> digests;
     io::read_recording(run, run.recordings[r], both, digests);
     const int mount = file.record.recording_mount[r];

@@ -49,7 +49,9 @@ std::vector<std::string> mounts_of(const io::RunFile& run) {
   return mounts;
 }
 
-calibration::ModelTerms terms_of(const io::RunFile& run) { return {run.cubic, run.g_sensitivity, run.quadratic}; }
+calibration::ModelTerms terms_of(const io::RunFile& run) {
+  return {run.cubic, run.g_sensitivity, run.quadratic, run.asymmetry, run.size_effect, run.temperature};
+}
 
 calibration::TableSolveOptions table_options(const io::RunFile& run, const std::vector<std::string>& mounts) {
   calibration::TableSolveOptions options;

@@ -36,6 +36,9 @@ struct Options {
   double gravity_sigma = 1e-5;
   double outliers_percent = 0.0;
   double dropped_percent = 0.0;
+  int thermal_order = 3;
+  double asymmetry_ppm = 0.0;
+  double places_mm = 0.0;
   int batch = 1;
   int repeat = 0;
   bool noise_free = false;
@@ -47,9 +50,10 @@ struct Options {
 class ImuMessages {
  public:
   ImuMessages(int batch, io::LcmLogWriter& log) : batch_(static_cast<std::size_t>(batch)), log_(log) {}
+  void temperature(double celsius) { celsius_ = celsius; }
   void add(std::int64_t utime, std::int64_t sequence, const InertialSample<double>& sample) {
     if (batch_ == 1) {
-      io::encode_imu(utime, sequence, sample, message_);
+      io::encode_imu(utime, sequence, sample, message_, celsius_);
       log_.write(utime, "IMU", message_);
       return;
     }
@@ -62,7 +66,7 @@ class ImuMessages {
   }
   void finish() {
     if (utime_.empty()) return;
-    io::encode_imu_batch(first_, utime_, samples_, message_);
+    io::encode_imu_batch(first_, utime_, samples_, message_, celsius_);
     log_.write(utime_.back(), "IMU", message_);
     utime_.clear();
     samples_.clear();
@@ -71,6 +75,7 @@ class ImuMessages {
  private:
   std::size_t batch_;
   io::LcmLogWriter& log_;
+  double celsius_ = std::numeric_limits<double>::quiet_NaN();
   std::int64_t first_ = 0;
   std::vector<std::int64_t> utime_;
   std::vector<InertialSample<double>> samples_;
@@ -83,6 +88,7 @@ struct Bench {
   io::RigFile rig;
   Site site;
   io::TableMoves moves;
+  Soak soak;
   std::vector<int> mount;         // of each recording
   std::vector<std::string> logs;  // names within the folder
   std::string serial;
@@ -134,6 +140,7 @@ Bench bench_of_run(const std::string& path, std::string& text) {
   bench.site = run.site;
   bench.moves = io::read_table_moves(run.moves, run.recordings.size());
   bench.serial = run.serial;
+  bench.soak = run.soak;
   const fs::path folder = fs::path(path).parent_path();
   const auto beside = [&](const std::string& file) {
     std::string name = fs::path(file).lexically_relative(folder.empty() ? fs::path(".") : folder).string();
@@ -174,6 +181,10 @@ void simulate(const Options& o) {
   settings.seed = o.seed;
   if (bench.sheet.rate_hz > 0.0) settings.rate = bench.sheet.rate_hz;
   if (bench.sheet.has_noise) settings.noise = bench.sheet.noise;
+  settings.soak = bench.soak;
+  settings.thermal_order = o.thermal_order;
+  settings.gyro_asymmetry = settings.accel_asymmetry = 1e-6 * o.asymmetry_ppm;
+  settings.accel_place = 1e-3 * o.places_mm;
   settings.outlier_fraction = 0.01 * o.outliers_percent;
   settings.dropped_fraction = 0.01 * o.dropped_percent;
   if (o.noise_free) settings = settings.noise_free();
@@ -204,6 +215,7 @@ void simulate(const Options& o) {
     sinks.imu = [&](std::int64_t utime, std::int64_t sequence, const InertialSample<double>& sample) {
       imu.add(utime, sequence, sample);
     };
+    sinks.temperature = [&](double celsius) { imu.temperature(celsius); };
     sinks.encoder = [&](std::int64_t utime, std::int64_t sequence, double azimuth, double pitch) {
       io::encode_encoder(utime, sequence, azimuth, pitch, message);
       log.write(utime, "ENCODER", message);
@@ -268,6 +280,16 @@ void add_simulate(CLI::App& app, ExitCode& exit_code) {
   command->add_option("--dropped-percent", o->dropped_percent, "Samples that are lost")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 99.0));
+  command->add_option("--thermal-order", o->thermal_order, "Of a run with a soak: of biases and scales in temperature")
+      ->capture_default_str()
+      ->check(CLI::Range(1, ThermalErrors<double>::kMostOrder))
+      ->needs(run);
+  command->add_option("--asymmetry-ppm", o->asymmetry_ppm, "1 sigma of every sensor's")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 1e5));
+  command->add_option("--places-mm", o->places_mm, "1 sigma of where accelerometers y and z sit, off x")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 1000.0));
   command->add_option("--batch", o->batch, "Samples a message: imu_t, or imu_batch_t")
       ->capture_default_str()
       ->check(CLI::Range(1, 1000));

@@ -121,9 +121,10 @@ void add_solve(CLI::App& app, ExitCode& exit_code) {
   command->add_option("run", o->run, "Run file")->required();
   command->add_option("-o,--output", o->output, "Calibration file to write");
   command
-      ->add_option(
-          "--model", o->model,
-          "auto: begin with bias and matrix, and add cubic, g_sensitivity, quadratic only where the data pay for them")
+      ->add_option("--model", o->model,
+                   "auto: begin with bias and matrix, and add cubic, g_sensitivity, quadratic, asymmetry, size_effect "
+                   "and orders of "
+                   "temperature only where the data pay for them")
       ->check(CLI::IsMember({"auto"}));
   command->add_option("--format", o->format, "Of the result on standard output")
       ->capture_default_str()

@@ -69,8 +69,7 @@ ExitCode verify(const Options& o) {
   for (std::size_t r = 0; r < run.recordings.size(); ++r) {
     const io::RecordingFiles& files = run.recordings[r];
     const std::size_t mount = mount_in(file, o.calibration, files.mount);
-    const UnitCorrection<double> correction(file.record.value.unit);
-    BeforeAndAfter both(compress_options(run, files), correction);
+    BeforeAndAfter both(compress_options(run, files), file.record.value.unit);
     {
       ProgressLine progress;
       std::vector<std::pair<std::string, std::string>> digests;

@@ -20,7 +20,6 @@ namespace {
 
 constexpr double kNear = 0.3;              // of one: no unit's scale errs by as much
 constexpr double kTolerableDamage = 1e-3;  // messages that are left out, against samples
-constexpr std::int32_t kNoTemperature = std::numeric_limits<std::int32_t>::min();
 
 bool is_block(const std::string& path) { return path.size() > 4 && path.compare(path.size() - 4, 4, ".bin") == 0; }
 
@@ -68,7 +67,6 @@ Corrector::Corrector(const CorrectorOptions& options) {
   } else {
     const InertialUnit<double> unit =
         io::unit_of(io::read_calibration_file(options.calibration), options.calibration, options.recording);
-    thermal_ = !unit.thermal.is_zero();
     si_.emplace(unit);
     if (!options.sheet.empty() && options.in_floating_point) {
       counts_.emplace(unit, scale);
@@ -94,7 +92,6 @@ void Corrector::read_block(const CorrectorOptions& options, const UnitScale<doub
   const auto read = read_flash_block(memory, bytes.size());
   if (!read.ok()) throw io::input_error(options.calibration, 0, "", "is no whole block of this version");
   const FlashBlock& block = *read.value();
-  thermal_ = true;
   if (options.recording > 0)
     throw Error(ExitCode::kUsage, options.calibration + ": a block has one turn-on bias: leave --recording out");
   if (block.has_counts == 0) {
@@ -121,26 +118,31 @@ void Corrector::read_block(const CorrectorOptions& options, const UnitScale<doub
 
 const char* Corrector::path() const { return integers_ ? "integers" : counts_ || si_ ? "double" : "float"; }
 
-InertialSample<double> Corrector::correct(const InertialSample<double>& reading, double temperature) const {
-  const bool warm = thermal_ && std::isfinite(temperature);
-  if (si_) return warm ? si_->correct(reading, temperature) : si_->correct(reading);
-  return wide(warm ? si_float_->correct(narrow(reading), static_cast<float>(temperature))
-                   : si_float_->correct(narrow(reading)));
+InertialSample<double> Corrector::correct(std::int64_t utime, const InertialSample<double>& reading,
+                                          double temperature) {
+  if (si_) {
+    si_->set_temperature(temperature);
+    return si_->correct(1e-6 * static_cast<double>(utime), reading);
+  }
+  return wide(std::isfinite(temperature) ? si_float_->correct(narrow(reading), static_cast<float>(temperature))
+                                         : si_float_->correct(narrow(reading)));
 }
 
-InertialSample<double> Corrector::correct(const io::ImuCounts& raw) const {
-  const bool warm = thermal_ && raw.temperature != kNoTemperature;
+InertialSample<double> Corrector::correct(const io::ImuCounts& raw) {
+  const bool warm = raw.temperature != io::ImuCounts::kNoTemperature;
   if (integers_) {
     CountCorrection correction(*integers_);
-    if (raw.temperature != kNoTemperature) correction.set_temperature(raw.temperature);
+    if (warm) correction.set_temperature(raw.temperature);
     const UnitOutput<std::int32_t> out = correction.correct_saturated(raw.counts);
     return {Vec3<double>(out[0], out[1], out[2]) * gyro_out_, Vec3<double>(out[3], out[4], out[5]) * accel_out_};
   }
   const auto& y = raw.counts;
   const InertialSample<double> reading{Vec3<double>(y[0], y[1], y[2]), Vec3<double>(y[3], y[4], y[5])};
-  const double temperature = raw.temperature / 256.0;
-  if (counts_) return warm ? counts_->correct(reading, temperature) : counts_->correct(reading);
-  return wide(warm ? counts_float_->correct(narrow(reading), static_cast<float>(temperature))
+  if (counts_) {
+    counts_->set_temperature(raw.celsius());
+    return counts_->correct(1e-6 * static_cast<double>(raw.utime), reading);
+  }
+  return wide(warm ? counts_float_->correct(narrow(reading), static_cast<float>(raw.celsius()))
                    : counts_float_->correct(narrow(reading)));
 }
 
@@ -160,7 +162,7 @@ void CorrectedMessages::finish() const {
     throw Error(ExitCode::kInput, first_fault_);
 }
 
-const std::string* CorrectedMessages::correct(const io::LcmEvent& event, const Corrector& corrector) {
+const std::string* CorrectedMessages::correct(const io::LcmEvent& event, Corrector& corrector) {
   why_.clear();
   if (!mapped_) {
     if (const auto raw = io::decode_imu_counts(event.data)) {
@@ -169,9 +171,7 @@ const std::string* CorrectedMessages::correct(const io::LcmEvent& event, const C
       }
       sequence_.add(raw->sequence);
       ++samples_;
-      io::encode_imu(
-          raw->utime, raw->sequence, corrector.correct(*raw), message_,
-          raw->temperature == kNoTemperature ? std::numeric_limits<double>::quiet_NaN() : raw->temperature / 256.0);
+      io::encode_imu(raw->utime, raw->sequence, corrector.correct(*raw), message_, raw->celsius());
       return &message_;
     }
   }
@@ -191,8 +191,8 @@ const std::string* CorrectedMessages::correct(const io::LcmEvent& event, const C
   if (!taken_.values.empty() && !corrector.takes_si()) why_ = "readings in SI, and the block is for raw counts";
   if (!why_.empty()) return left_out(event, why_);
   if (taken_.values.empty()) return nullptr;
-  const double temperature = io::temperature_of(event.data);
-  for (InertialSample<double>& value : taken_.values) value = corrector.correct(value, temperature);
+  for (std::size_t k = 0; k < taken_.values.size(); ++k)
+    taken_.values[k] = corrector.correct(taken_.stamps[k], taken_.values[k], taken_.celsius);
   const long long first = samples_;
   samples_ += static_cast<long long>(taken_.values.size());
   if (!mapped_) {

@@ -6,13 +6,14 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "trunnion/error_model/count_correction.hpp"
-#include "trunnion/error_model/inertial_unit.hpp"
+#include "trunnion/error_model/stream_correction.hpp"
 #include "trunnion/io/lcm_recording.hpp"
 #include "trunnion/io/sensor_sheet.hpp"
 
@@ -31,16 +32,18 @@ struct CorrectorOptions {
 /// @throws Error (input) for a scale that makes no raw counts, or a range that the register does not hold
 void check_counts(const io::SensorSheet& sheet, const std::string& path, int bits);
 
-/// One calibration, ready to correct. Not changed: a new file makes a new one.
+/// One calibration along one stream of samples. A new file makes a new one.
 class Corrector {
  public:
   /// @throws Error (input) for files that cannot be read or do not fit together
   explicit Corrector(const CorrectorOptions& options);
 
-  /// @param temperature [degC]; not a number where it is not known: the terms of temperature are left out
-  [[nodiscard]] InertialSample<double> correct(const InertialSample<double>& reading, double temperature) const;
+  /// @param utime [us]; @param temperature [degC]; not a number where it is not known: that of before holds on, in the
+  /// beginning the calibration's reference
+  [[nodiscard]] InertialSample<double> correct(std::int64_t utime, const InertialSample<double>& reading,
+                                               double temperature);
   /// Raw counts, in integers where the calibration allows it.
-  [[nodiscard]] InertialSample<double> correct(const io::ImuCounts& raw) const;
+  [[nodiscard]] InertialSample<double> correct(const io::ImuCounts& raw);
 
   [[nodiscard]] bool takes_si() const { return si_.has_value() || si_float_.has_value(); }
   [[nodiscard]] bool takes_counts() const { return integers_ || counts_.has_value() || counts_float_.has_value(); }
@@ -50,14 +53,13 @@ class Corrector {
  private:
   void read_block(const CorrectorOptions& options, const UnitScale<double>& scale);
 
-  std::optional<UnitCorrection<double>> si_;
+  std::optional<StreamCorrection<double>> si_;
   std::optional<UnitCorrection<float>> si_float_;  // of a block
-  std::optional<UnitCorrection<double>> counts_;
+  std::optional<StreamCorrection<double>> counts_;
   std::optional<UnitCorrection<float>> counts_float_;
   std::unique_ptr<CountCoefficients> integers_;
   double gyro_out_ = 1.0;  // SI of a count out
   double accel_out_ = 1.0;
-  bool thermal_ = false;
 };
 
 /// Messages of one channel, corrected.
@@ -67,7 +69,7 @@ class CorrectedMessages {
   CorrectedMessages(const std::string& source, const io::LcmChannels& channels);
 
   /// @return the corrected message; nothing when it could not be decoded: why() says it
-  const std::string* correct(const io::LcmEvent& event, const Corrector& corrector);
+  const std::string* correct(const io::LcmEvent& event, Corrector& corrector);
 
   [[nodiscard]] const std::string& why() const { return why_; }
   [[nodiscard]] long long samples() const { return samples_; }
@@ -84,9 +86,11 @@ class CorrectedMessages {
       stamps.push_back(utime);
       values.push_back(sample);
     }
+    void temperature(double told) override { celsius = told; }
     void encoder(std::int64_t, double, double) override {}
     std::vector<std::int64_t> stamps;
     std::vector<InertialSample<double>> values;
+    double celsius = std::numeric_limits<double>::quiet_NaN();
   };
 
   const std::string* left_out(const io::LcmEvent& event, const std::string& why);

@@ -254,9 +254,10 @@ Recording read_recording(const RecordingSource& source) {
     throw io::input_error(axis, 0, "", "fewer than two index pulses");
   if (!source.calibration.empty()) {
     const InertialUnit<double> unit = io::read_calibration_file(source.calibration).record.value.unit;
-    if (!unit.thermal.is_zero()) {
+    if (unit.thermal.order() > 0 || !unit.accel_place.isZero(0.0)) {
       std::fprintf(stderr,
-                   "%s: has temperature terms, which are not applied: recordings are read without temperature\n",
+                   "%s: has terms of temperature or of the size effect, which are not applied: recordings are read "
+                   "without temperature\n",
                    source.calibration.c_str());
     }
     const UnitCorrection<double> correction(unit);

@@ -59,10 +59,10 @@ void Compressor::imu(std::int64_t utime, const InertialSample<double>& sample) {
   }
   const double t = seconds(utime);
   if (result_.figures.period > 0.0) {
-    place(t, sample);
+    place(t, sample, celsius_);
     return;
   }
-  early_.push_back({t, sample});
+  early_.push_back({t, celsius_, sample});
   if (early_.size() < kSamplesForPeriod) return;
   scratch_.clear();
   for (std::size_t i = 1; i < early_.size(); ++i) scratch_.push_back(early_[i].t - early_[i - 1].t);
@@ -72,7 +72,7 @@ void Compressor::imu(std::int64_t utime, const InertialSample<double>& sample) {
                                       " Hz, the sheet's rate_hz says " + std::to_string(1.0 / options_.period));
   }
   result_.figures.period = options_.period > 0.0 ? options_.period : found;
-  for (const Early& e : early_) place(e.t, e.sample);
+  for (const Early& e : early_) place(e.t, e.sample, e.celsius);
   early_ = {};
 }
 
@@ -86,7 +86,7 @@ void Compressor::encoder(std::int64_t utime, double azimuth, double pitch) {
   result_.course.add(seconds(utime), azimuth, pitch);
 }
 
-void Compressor::place(double t, const InertialSample<double>& sample) {
+void Compressor::place(double t, const InertialSample<double>& sample, double celsius) {
   const double period = result_.figures.period;
   if (result_.figures.samples == 0 && t_.empty()) {
     if (period > kSlowestPeriod) {
@@ -105,6 +105,10 @@ void Compressor::place(double t, const InertialSample<double>& sample) {
   }
   t_last_ = t;
   t_.push_back(t);
+  if (std::isfinite(celsius)) {
+    celsius_sum_ += celsius;
+    ++celsius_count_;
+  }
   for (int axis = 0; axis < 3; ++axis) {
     channel_[static_cast<std::size_t>(axis)].push_back(sample.w(axis));
     channel_[static_cast<std::size_t>(axis) + 3].push_back(sample.f(axis));
@@ -213,9 +217,12 @@ void Compressor::close_window() {
     window.weight = quadrature_weights(moment);
     window.mean.w = Vec3<double>(sum[0], sum[1], sum[2]) / count;
     window.mean.f = Vec3<double>(sum[3], sum[4], sum[5]) / count;
+    if (celsius_count_ > 0) window.temperature = celsius_sum_ / celsius_count_;
     result_.figures.samples += window.samples;
     result_.windows.push_back(window);
   }
+  celsius_sum_ = 0.0;
+  celsius_count_ = 0;
   t_.clear();
   bad_.clear();
   for (auto& channel : channel_) channel.clear();

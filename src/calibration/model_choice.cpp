@@ -3,6 +3,7 @@
 
 #include "trunnion/calibration/model_choice.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -18,14 +19,37 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kBlock = 5.0;  // s
 constexpr int kHeldOut = 5;     // every fifth block
 
-struct Term {
-  const char* name;
-  bool ModelTerms::*chosen;
-  int parameters;
+/// A model with one term more.
+struct Candidate {
+  std::string name;
+  ModelTerms terms;
+  int parameters = 0;
 };
-constexpr std::array<Term, 3> kTerms = {{{"cubic", &ModelTerms::cubic, 3},
-                                         {"g_sensitivity", &ModelTerms::g_sensitivity, 9},
-                                         {"quadratic", &ModelTerms::quadratic, 3}}};
+
+std::vector<Candidate> candidates(const ModelTerms& terms, bool has_temperature) {
+  struct Term {
+    const char* name;
+    bool ModelTerms::*chosen;
+    int parameters;
+  };
+  constexpr std::array<Term, 5> kTerms = {{{"cubic", &ModelTerms::cubic, 3},
+                                           {"g_sensitivity", &ModelTerms::g_sensitivity, 9},
+                                           {"quadratic", &ModelTerms::quadratic, 3},
+                                           {"asymmetry", &ModelTerms::asymmetry, 6},
+                                           {"size_effect", &ModelTerms::size_effect, 6}}};
+  std::vector<Candidate> all;
+  for (const Term& term : kTerms) {
+    if (terms.*term.chosen) continue;
+    all.push_back({term.name, terms, term.parameters});
+    all.back().terms.*term.chosen = true;
+  }
+  // a polynomial may lack one order and have the next
+  for (int order = terms.temperature + 1; has_temperature && order <= ThermalErrors<double>::kMostOrder; ++order) {
+    all.push_back({"temperature: " + std::to_string(order), terms, 12 * (order - terms.temperature)});
+    all.back().terms.temperature = order;
+  }
+  return all;
+}
 
 /// A fit, or why there is none.
 struct Fit {
@@ -75,7 +99,9 @@ double unseen(const std::vector<TableRecording>& held_out, const Rig& rig, const
   std::vector<int> mounts;
   mounts.reserve(held_out.size());
   for (const TableRecording& recording : held_out) mounts.push_back(recording.mount);
-  const Layout layout(layout_request(options, rig, mounts, 1.0));
+  LayoutRequest request = layout_request(options, rig, mounts, 1.0);
+  request.temperature = range_of(held_out);
+  const Layout layout(request);
   for (std::size_t r = 0; r < held_out.size(); ++r) {
     RecordingModel model(held_out[r], r, rig, site, layout, solution.record.value.clock_offset);
     model.set_noise(solution.noise);
@@ -86,76 +112,91 @@ double unseen(const std::vector<TableRecording>& held_out, const Rig& rig, const
 
 }  // namespace
 
-ModelChoice choose_model(const std::vector<TableRecording>& recordings, const Rig& rig, const Site& site,
+ModelChoice choose_model(const std::vector<TableRecording>& all_recordings, const Rig& rig, const Site& site,
                          TableSolveOptions options) {
+  const bool has_temperature = range_of(all_recordings).is_known();
+  std::vector<TableRecording> with_temperature;
+  if (has_temperature) {
+    // models with and without terms of temperature are held against the same windows
+    with_temperature = all_recordings;
+    for (TableRecording& recording : with_temperature) {
+      auto& windows = recording.data.windows;
+      windows.erase(std::remove_if(windows.begin(), windows.end(),
+                                   [](const ObservationWindow& w) { return !std::isfinite(w.temperature); }),
+                    windows.end());
+    }
+  }
+  const std::vector<TableRecording>& recordings = has_temperature ? with_temperature : all_recordings;
+  const auto with_terms = [&](const ModelTerms& terms) {
+    TableSolveOptions with = options;
+    with.progress = nullptr;
+    with.terms = terms;
+    return with;
+  };
   ModelChoice choice;
-  choice.terms = {false, false, false};
-  options.terms = choice.terms;
-  Fit best = fit(recordings, rig, site, options);
+  choice.terms = {false, false};
+  Fit best = fit(recordings, rig, site, with_terms(choice.terms));
   std::string last_why = best.why;
   const std::vector<TableRecording> seen = part(recordings, false);
   const std::vector<TableRecording> held_out = part(recordings, true);
   double residuals = 0.0;
   for (const TableRecording& recording : recordings)
     residuals += 6.0 * static_cast<double>(recording.data.windows.size());
-  std::array<bool, kTerms.size()> out{};
+  std::vector<std::string> out;  // what the held-out windows refused
   for (;;) {
-    std::optional<std::size_t> next;
+    std::optional<Candidate> next;
     Fit next_fit;
     double most = 0.0;
-    std::array<TermVerdict, kTerms.size()> now;
-    for (std::size_t i = 0; i < kTerms.size(); ++i) {
-      if (choice.terms.*kTerms[i].chosen || out[i]) continue;
-      if (options.progress) options.progress(std::string("trying ") + kTerms[i].name);
-      TableSolveOptions with = options;
-      with.progress = nullptr;
-      with.terms = choice.terms;
-      with.terms.*kTerms[i].chosen = true;
-      Fit one = fit(recordings, rig, site, with);
-      TermVerdict& verdict = now[i];
-      verdict.term = kTerms[i].name;
-      verdict.parameters = kTerms[i].parameters;
-      verdict.asked = kTerms[i].parameters * std::log(residuals);
+    TermVerdict next_verdict;
+    std::vector<TermVerdict> others;
+    for (const Candidate& candidate : candidates(choice.terms, has_temperature)) {
+      if (std::find(out.begin(), out.end(), candidate.name) != out.end()) continue;
+      if (options.progress) options.progress("trying " + candidate.name);
+      TermVerdict verdict;
+      verdict.term = candidate.name;
+      verdict.parameters = candidate.parameters;
+      verdict.asked = candidate.parameters * std::log(residuals);
+      Fit one = fit(recordings, rig, site, with_terms(candidate.terms));
       verdict.why = one.why;
       if (!one.solution) {
         last_why = one.why;
-        continue;
+      } else {
+        verdict.gain = best.solution ? best.chi_square - one.chi_square : kInfinity;
       }
-      verdict.gain = best.solution ? best.chi_square - one.chi_square : kInfinity;
-      // where there is no fit without it, the best of those with one
-      const double worth = best.solution ? verdict.gain / verdict.asked : 2.0 + residuals / one.chi_square;
-      if (one.chi_square == kInfinity || !(worth > std::max(1.0, most))) continue;
-      most = worth;
-      next = i;
-      next_fit = std::move(one);
+      // where there is no fit without it, the best of those with one, by the same criterion
+      const double worth =
+          best.solution ? verdict.gain / verdict.asked : 2.0 + residuals / (one.chi_square + verdict.asked);
+      if (one.chi_square < kInfinity && worth > std::max(1.0, most)) {
+        most = worth;
+        if (next) others.push_back(next_verdict);
+        next = candidate;
+        next_fit = std::move(one);
+        next_verdict = verdict;
+      } else {
+        others.push_back(verdict);
+      }
     }
     if (!next) {
-      for (const TermVerdict& verdict : now) {
-        if (!verdict.term.empty()) choice.verdicts.push_back(verdict);
-      }
+      choice.verdicts.insert(choice.verdicts.end(), others.begin(), others.end());
       break;
     }
-    TermVerdict verdict = now[*next];
-    TableSolveOptions with = options;
-    with.progress = nullptr;
-    with.terms = choice.terms;
-    TableSolveOptions without = with;
-    with.terms.*kTerms[*next].chosen = true;
+    const TableSolveOptions with = with_terms(next->terms);
+    const TableSolveOptions without = with_terms(choice.terms);
     const Fit fit_with = fit(seen, rig, site, with);
     const Fit fit_without = fit(seen, rig, site, without);
     if (fit_with.solution && fit_without.solution)
-      verdict.held_out_gain = unseen(held_out, rig, site, without, *fit_without.solution) -
-                              unseen(held_out, rig, site, with, *fit_with.solution);
+      next_verdict.held_out_gain = unseen(held_out, rig, site, without, *fit_without.solution) -
+                                   unseen(held_out, rig, site, with, *fit_with.solution);
     else
-      verdict.held_out_gain = fit_with.solution ? kInfinity : -kInfinity;
-    verdict.taken = verdict.held_out_gain > 0.0;
-    choice.verdicts.push_back(verdict);
-    if (verdict.taken) {
-      choice.terms.*kTerms[*next].chosen = true;
+      next_verdict.held_out_gain = fit_with.solution ? kInfinity : -kInfinity;
+    next_verdict.taken = next_verdict.held_out_gain > 0.0;
+    choice.verdicts.push_back(next_verdict);
+    if (next_verdict.taken) {
+      choice.terms = next->terms;
       best = std::move(next_fit);
-      out.fill(false);  // beside this one another may be worth it after all
+      out.clear();  // beside this one another may be worth it after all
     } else {
-      out[*next] = true;
+      out.push_back(next->name);
     }
   }
   if (!best.solution) throw Error(ExitCode::kNumerics, last_why);

@@ -254,6 +254,10 @@ class HandProblem {
   LayoutRequest request() const {
     LayoutRequest r;
     r.terms = options_.terms;
+    if (r.terms.asymmetry || r.terms.size_effect || r.terms.temperature > 0)
+      throw Error(ExitCode::kInput,
+                  "by hand the model has cubic, g_sensitivity and quadratic: asymmetry, size_effect and temperature "
+                  "need a table");
     r.refuse_above = options_.refuse_above;
     r.recordings = static_cast<int>(recordings_.size());
     r.bias_per_recording = options_.bias_per_recording;

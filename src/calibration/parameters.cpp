@@ -33,6 +33,14 @@ Layout::Layout(const LayoutRequest& request) : refuse_above_(request.refuse_abov
     for (int i = 0; i < 3; ++i) add(before + axis(i) + after, kind);
     return first;
   };
+  // from entry @p first on, what is stated at an argument whose power is @p at
+  const auto stated_at = [&](int first, double at) {
+    for (int i = first; i < size(); ++i) {
+      parameters[static_cast<std::size_t>(i)].refuse_above /= at;
+      parameters[static_cast<std::size_t>(i)].scale /= at;
+      parameters[static_cast<std::size_t>(i)].in_unit *= at;
+    }
+  };
   const auto matrix_entry = [&](const std::string& sensor, int row, int column, Entry scale, Entry cross) {
     return row == column ? add(sensor + " " + axis(row) + " scale", scale)
                          : add(sensor + " " + axis(column) + " cross-coupling into " + axis(row), cross);
@@ -42,12 +50,7 @@ Layout::Layout(const LayoutRequest& request) : refuse_above_(request.refuse_abov
   for (int i = 0; i < 9; ++i) matrix_entry("gyro", i / 3, i % 3, Entry::kGyroScale, Entry::kGyroCrossCoupling);
   if (request.terms.cubic) {
     gyro_cubic = three("gyro ", " cubic", Entry::kGyroCubic);
-    const double w2 = request.largest_rate * request.largest_rate;
-    for (int i = gyro_cubic; i < size(); ++i) {
-      parameters[static_cast<std::size_t>(i)].refuse_above /= w2;
-      parameters[static_cast<std::size_t>(i)].scale /= w2;
-      parameters[static_cast<std::size_t>(i)].in_unit *= w2;
-    }
+    stated_at(gyro_cubic, request.largest_rate * request.largest_rate);
   }
   if (request.terms.g_sensitivity) {
     g_sensitivity = size();
@@ -62,6 +65,28 @@ Layout::Layout(const LayoutRequest& request) : refuse_above_(request.refuse_abov
     }
   }
   if (request.terms.quadratic) accel_quadratic = three("accelerometer ", " quadratic", Entry::kAccelQuadratic);
+  if (request.terms.asymmetry) {
+    gyro_asymmetry = three("gyro ", " asymmetry", Entry::kGyroAsymmetry);
+    accel_asymmetry = three("accelerometer ", " asymmetry", Entry::kAccelAsymmetry);
+  }
+  if (request.terms.size_effect) {
+    accel_place = three("accelerometer y's place along ", "", Entry::kAccelPlace);
+    three("accelerometer z's place along ", "", Entry::kAccelPlace);
+  }
+  if (request.terms.temperature > 0) {
+    thermal = size();
+    thermal_order = request.terms.temperature;
+    const char* const kPower[] = {"", " squared", " cubed", " to the 4th", " to the 5th"};
+    for (int k = 1; k <= thermal_order; ++k) {
+      const int first = size();
+      const std::string by = std::string(" by temperature") + kPower[k - 1];
+      three("gyro ", " bias" + by, Entry::kGyroThermalBias);
+      three("accelerometer ", " bias" + by, Entry::kAccelThermalBias);
+      three("gyro ", " scale" + by, Entry::kGyroThermalScale);
+      three("accelerometer ", " scale" + by, Entry::kAccelThermalScale);
+      stated_at(first, std::pow(request.temperature.reach(), k));
+    }
+  }
   const int biases = request.bias_per_recording ? request.recordings : 1;
   for (int r = 0; r < biases; ++r) {
     const std::string of = biases > 1 ? " in recording " + std::to_string(r + 1) : "";
@@ -115,6 +140,16 @@ void Layout::visit(CalibrationValues& v, Visit&& visit) const {
     for (int j = 0; j < 3; ++j) one(accel_matrix[i][j], v.unit.accel.M(i, j));
   }
   three(accel_quadratic, v.unit.accel.quadratic);
+  three(gyro_asymmetry, v.unit.gyro.asymmetry);
+  three(accel_asymmetry, v.unit.accel.asymmetry);
+  for (int i = 0; accel_place >= 0 && i < 6; ++i) visit(accel_place + i, v.unit.accel_place(i % 3, 1 + i / 3));
+  for (int k = 0; k < thermal_order; ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    three(thermal + 12 * k, v.unit.thermal.bias[at].w);
+    three(thermal + 12 * k + 3, v.unit.thermal.bias[at].f);
+    three(thermal + 12 * k + 6, v.unit.thermal.scale[at].w);
+    three(thermal + 12 * k + 9, v.unit.thermal.scale[at].f);
+  }
   for (std::size_t r = 0; r < gyro_bias.size(); ++r) {
     three(gyro_bias[r], v.recording_bias[r].w);
     three(accel_bias[r], v.recording_bias[r].f);

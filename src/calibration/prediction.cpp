@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "table_problem.hpp"
+#include "trunnion/core/error.hpp"
 
 namespace trunnion::calibration {
 namespace {
@@ -22,16 +23,29 @@ std::array<double, kWindowNodes> whole_window() {
   return quadrature_weights(moment);
 }
 
+TemperatureRange range_of(const Soak& soak) { return {std::min(soak.from, soak.to), std::max(soak.from, soak.to)}; }
+
 }  // namespace
 
 struct Predictor::State {
   State(const Rig& r, const Site& s, const std::vector<int>& m, const PredictionOptions& o)
-      : rig(r), site(s), mounts(m), options(o), layout(layout_request(o.solve, r, m, o.largest_rate)) {
+      : rig(r), site(s), mounts(m), options(o), layout(request_of(r, m, o)) {
     at.gravity = site.gravity;
     at.clock_offset = options.solve.clock_offset;
+    if (layout.thermal_order > 0) at.unit.thermal.reference = range_of(options.soak).reference();
     for (std::size_t i = 0; i < kMaxMounts; ++i) at.lever_arm[i] = rig.mount[i].lever_p;
     scale.resize(layout.size());
     for (int i = 0; i < layout.size(); ++i) scale(i) = layout.parameters[static_cast<std::size_t>(i)].scale;
+  }
+
+  static LayoutRequest request_of(const Rig& rig, const std::vector<int>& mounts, const PredictionOptions& options) {
+    LayoutRequest request = layout_request(options.solve, rig, mounts, options.largest_rate);
+    if (options.solve.terms.temperature > 0) {
+      if (!options.soak.is_known())
+        throw Error(ExitCode::kInput, "the model has terms of temperature: what will the temperature be? State a soak");
+      request.temperature = range_of(options.soak);
+    }
+    return request;
   }
 
   const Rig& rig;
@@ -71,6 +85,7 @@ Eigen::MatrixXd Predictor::information(std::size_t r, const PlannedMotion& motio
   window.samples = std::max(1, static_cast<int>(std::lround(kWindow * s.options.rate)));
   for (double t = kWindow; t <= motion.duration + 1e-9; t += kWindow) {
     window.t = t - window.half_width;
+    if (s.options.soak.is_known()) window.temperature = s.options.soak.at(window.t);
     recording.data.windows.push_back(window);
   }
   RecordingModel model(recording, r, s.rig, s.site, s.layout, s.options.solve.clock_offset);

@@ -35,13 +35,12 @@ enum RigPlace : int {
 constexpr int kMountPlace = kRigPlaces;
 constexpr int kSharedPlaces = kRigPlaces + 3;
 // ... and through the sensor of the row
-enum OwnPlace : int { kBias = 0, kMatrix = 1, kHigherOrder = 4, kForceRow = 5, kOwnPlaces = 8 };
-constexpr int kPlaces = kOwnPlaces + kSharedPlaces;
-constexpr int kRow = kPlaces + 1;  // and the residual, last
+enum OwnPlace : int { kBias = 0, kMatrix = 1, kHigherOrder = 4, kAsymmetry = 5, kForceRow = 6, kOwnPlaces = 9 };
+// ... and, where there are terms of temperature, five of its bias and five of its scale. The residual is last.
+constexpr int kThermalPlace = kOwnPlaces + kSharedPlaces;
+constexpr int kOrders = ThermalErrors<double>::kMostOrder;
 
 using Jet = ceres::Jet<double, kRigPlaces>;
-using Row = Eigen::Matrix<double, kRow, 1>;
-using RowNormal = Eigen::Matrix<double, kRow, kRow>;
 
 // The derivatives of a window's mean need no more than Gauss-Legendre of order two: they err by (w T)^4 / 4320, 1e-8
 // for 50 deg/s in 0.1 s.
@@ -49,13 +48,15 @@ constexpr double kDerivativeNode = 0.57735026918962576451;
 
 /// J^T J of one sensor's rows, gathered by blocks: one matrix product is many times cheaper than a rank-one update a
 /// row.
+template <int kRow>
 class NormalMatrix {
  public:
-  void add(const Row& row) {
+  using Total = Eigen::Matrix<double, kRow, kRow>;
+  void add(const Eigen::Matrix<double, kRow, 1>& row) {
     block_.col(rows_++) = row;
     if (rows_ == kBlock) flush();
   }
-  const RowNormal& total() {
+  const Total& total() {
     flush();
     return total_;
   }
@@ -67,7 +68,7 @@ class NormalMatrix {
     rows_ = 0;
   }
   Eigen::Matrix<double, kRow, kBlock> block_;
-  RowNormal total_ = RowNormal::Zero();
+  Total total_ = Total::Zero();
   Eigen::Index rows_ = 0;
 };
 using Shared = Eigen::Matrix<double, 3, kSharedPlaces>;
@@ -116,9 +117,10 @@ struct RecordingModel::Model {
   std::array<Mat3<double>, 3> dC_bp;  ///< to the mount's errors
 };
 
-/// Mean input of a window in the case, its squares and cubes, and their derivatives.
+/// Mean input of a window in the case, its sizes, squares and cubes, and their derivatives.
 struct RecordingModel::WindowInput {
-  Vec3<double> w, f, w3, f2;
+  Vec3<double> w, f, w3, f2, w_size, f_size;
+  Mat3<double> of_place;  ///< [w' x] + [w x]^2: force for a place in the case, where there is a size effect
   Shared dw, df, dw3, df2;
 };
 
@@ -134,6 +136,7 @@ void RecordingModel::refresh() {
     const double margin = data.windows[examined_].half_width + kWindowMargin;
     const double t = data.windows[examined_].t - first_offset_;
     if (t + margin > data.course.end()) break;  // the encoders are not there yet
+    if (layout_.thermal_order > 0 && !std::isfinite(data.windows[examined_].temperature)) continue;
     if (data.course.covers(t - margin, t + margin)) usable_.push_back(examined_);
   }
   inflation_.resize(usable_.size(), {1, 1, 1, 1, 1, 1});
@@ -146,13 +149,15 @@ void RecordingModel::refresh() {
   angle_variance_ = data.course.reading_sigma() * data.course.reading_sigma() * kRestLength / width;
 }
 
-double RecordingModel::evaluate(const CalibrationValues& values, Eigen::MatrixXd* normal) const {
+double RecordingModel::evaluate(const CalibrationValues& values, Eigen::MatrixXd* normal, int power) const {
   const auto nothing = [](std::size_t, int, double, double) {};
-  return normal != nullptr ? run<true>(values, normal, nothing) : run<false>(values, nullptr, nothing);
+  if (normal == nullptr) return run<Rows::kNone>(values, nullptr, power, nothing);
+  return layout_.thermal_order > 0 ? run<Rows::kThermal>(values, normal, power, nothing)
+                                   : run<Rows::kPlain>(values, normal, power, nothing);
 }
 
 void RecordingModel::residuals(const CalibrationValues& values, const Visit& visit) const {
-  run<false>(values, nullptr, visit);
+  run<Rows::kNone>(values, nullptr, 1, visit);
 }
 
 /// White measurement variance of a row, before robust inflation.
@@ -227,14 +232,17 @@ AxisMotion<T> RecordingModel::motion(const CourseValue& reading) const {
 }
 
 /// A pass over the windows at one estimate, which may go on when there are more of them.
-template <bool kWithRows>
+template <RecordingModel::Rows kRows>
 struct RecordingModel::Pass {
-  using Whitened = std::conditional_t<kWithRows, Row, Eigen::Matrix<double, 1, 1>>;
+  static constexpr bool kWithRows = kRows != Rows::kNone;
+  static constexpr int kRow = static_cast<int>(kRows);
+  using Row = Eigen::Matrix<double, kRow, 1>;
 
-  Pass(const RecordingModel& of, const CalibrationValues& at)
+  Pass(const RecordingModel& of, const CalibrationValues& at, int weight_power = 1)
       : values(at),
         model{rigged<double>(of.rig_, of.site_, at, of.mount()), {}, {}, {}},
-        row_normal(kWithRows ? 6 : 0) {
+        row_normal(kWithRows ? 6 : 0),
+        power(weight_power) {
     const std::size_t mount = of.mount();
     if constexpr (kWithRows) model.derived = rigged<Jet>(of.rig_, of.site_, at, mount);
     // C_bp = Exp(-e) C_bp(nominal), and its derivatives to e
@@ -250,60 +258,73 @@ struct RecordingModel::Pass {
       }
     }
     whitening.reserve(6);
-    for (int row = 0; row < 6; ++row)
-      whitening.emplace_back(row < 3 ? of.noise_.gyro : of.noise_.accel, Whitened::Zero());
+    for (int row = 0; row < 6; ++row) whitening.emplace_back(row < 3 ? of.noise_.gyro : of.noise_.accel, Row::Zero());
   }
 
   CalibrationValues values;
   Model model;
-  std::vector<NormalMatrix> row_normal;
-  std::vector<Whitening<Whitened>> whitening;
+  std::vector<NormalMatrix<kRow>> row_normal;
+  std::vector<Whitening<Row>> whitening;
+  int power;
   std::size_t next = 0;  // window
   double cost = 0.0;
 };
 
-template <bool kWithRows, class VisitRow>
-double RecordingModel::run(const CalibrationValues& values, Eigen::MatrixXd* normal, VisitRow&& visit) const {
-  Pass<kWithRows> pass(*this, values);
+template <RecordingModel::Rows kRows, class VisitRow>
+double RecordingModel::run(const CalibrationValues& values, Eigen::MatrixXd* normal, int power,
+                           VisitRow&& visit) const {
+  Pass<kRows> pass(*this, values, power);
   advance(pass, visit);
-  if constexpr (kWithRows) {
-    for (int row = 0; row < 6; ++row) scatter(row, pass.row_normal[static_cast<std::size_t>(row)].total(), *normal);
-  }
+  if constexpr (kRows != Rows::kNone) scatter(pass, *normal);
   return pass.cost;
 }
 
 RecordingModel::Linearisation::Linearisation(const RecordingModel& model, const CalibrationValues& values)
-    : model_(&model), pass_(std::make_unique<Pass<true>>(model, values)) {}
+    : model_(&model), pass_(std::make_unique<Pass<Rows::kPlain>>(model, values)) {}
 RecordingModel::Linearisation::Linearisation(Linearisation&&) noexcept = default;
 RecordingModel::Linearisation::~Linearisation() = default;
 
 void RecordingModel::Linearisation::extend(const Visit& visit) { model_->advance(*pass_, visit); }
 
-void RecordingModel::Linearisation::add_to(Eigen::MatrixXd& normal) {
-  for (int row = 0; row < 6; ++row)
-    model_->scatter(row, pass_->row_normal[static_cast<std::size_t>(row)].total(), normal);
-}
+void RecordingModel::Linearisation::add_to(Eigen::MatrixXd& normal) { model_->scatter(*pass_, normal); }
 
 /// Takes the windows from the pass's next one on.
-template <bool kWithRows, class VisitRow>
-void RecordingModel::advance(Pass<kWithRows>& pass, VisitRow&& visit) const {
+template <RecordingModel::Rows kRows, class VisitRow>
+void RecordingModel::advance(Pass<kRows>& pass, VisitRow&& visit) const {
+  constexpr bool kWithRows = kRows != Rows::kNone;
   const CalibrationValues& values = pass.values;
   const InertialUnit<double>& unit = values.unit;
-  const Mat3<double> K_g = unit.gyro.matrix();
-  const Mat3<double> K_a = unit.accel.matrix();
-  const Vec3<double> bias_g = values.recording_bias[index_].w;
-  const Vec3<double> bias_a = values.recording_bias[index_].f;
+  Mat3<double> K_g = unit.gyro.matrix();
+  Mat3<double> K_a = unit.accel.matrix();
+  Vec3<double> bias_g = values.recording_bias[index_].w;
+  Vec3<double> bias_a = values.recording_bias[index_].f;
+  const bool has_places = layout_.accel_place >= 0 || !unit.accel_place.isZero(0.0);
+  double t = 0.0;  // temperature less T_0
   WindowInput in;
+  in.of_place.setZero();
   for (; pass.next < usable_.size(); pass.next += stride_) {
     const std::size_t k = pass.next;
     const ObservationWindow& window = this->window(k);
-    const bool moving = window_input<kWithRows>(pass.model, window, values.clock_offset, in);
-    const Vec3<double> r_g =
-        window.mean.w - (K_g * in.w + bias_g + unit.gyro.cubic.cwiseProduct(in.w3) + unit.g_sensitivity * in.f);
-    const Vec3<double> r_a = window.mean.f - (K_a * in.f + bias_a + unit.accel.quadratic.cwiseProduct(in.f2));
+    const bool moving = window_input<kWithRows>(pass.model, window, values.clock_offset, has_places, in);
+    if (layout_.thermal_order > 0) {
+      const InertialSample<double> bias = unit.thermal.at(window.temperature, unit.thermal.bias);
+      const InertialSample<double> scale = unit.thermal.at(window.temperature, unit.thermal.scale);
+      bias_g = values.recording_bias[index_].w + bias.w;
+      bias_a = values.recording_bias[index_].f + bias.f;
+      K_g.diagonal() = unit.gyro.matrix().diagonal() + scale.w;
+      K_a.diagonal() = unit.accel.matrix().diagonal() + scale.f;
+      t = window.temperature - unit.thermal.reference;
+    }
+    const Mat3<double> at_place = in.of_place * unit.accel_place;  // a column an accelerometer
+    const Vec3<double> r_g = window.mean.w - (K_g * in.w + bias_g + unit.gyro.cubic.cwiseProduct(in.w3) +
+                                              unit.gyro.asymmetry.cwiseProduct(in.w_size) + unit.g_sensitivity * in.f);
+    const Vec3<double> r_a =
+        window.mean.f - (K_a * in.f + (K_a * at_place).diagonal() + bias_a + unit.accel.quadratic.cwiseProduct(in.f2) +
+                         unit.accel.asymmetry.cwiseProduct(in.f_size));
     Shared dr_g;
     Shared dr_a;
     if constexpr (kWithRows) {
+      // of asymmetry and size effect, which are small, what the rig's errors change is smaller still
       dr_g.noalias() = -(K_g * in.dw + unit.g_sensitivity * in.df);
       dr_g -= unit.gyro.cubic.asDiagonal() * in.dw3;
       dr_a.noalias() = -(K_a * in.df);
@@ -316,26 +337,34 @@ void RecordingModel::advance(Pass<kWithRows>& pass, VisitRow&& visit) const {
       const double inflation = static_cast<double>(inflation_[k][static_cast<std::size_t>(row)]);
       filter.predict(window.t, variance(k, row, moving) * inflation);
       const double residual = gyro ? r_g(i) : r_a(i);
+      const double weight = weights_.empty() ? 1.0 : std::pow(static_cast<double>(weights_[k]), pass.power);
       double innovation = 0.0;
       if constexpr (kWithRows) {
-        Row v;
+        typename Pass<kRows>::Row v;
         v(kBias) = -1.0;
-        v.segment<3>(kMatrix) = gyro ? -in.w : -in.f;
+        v.template segment<3>(kMatrix) = gyro ? Vec3<double>(-in.w) : Vec3<double>(-(in.f + at_place.col(i)));
         v(kHigherOrder) = gyro ? -in.w3(i) : -in.f2(i);
-        if (gyro) {
-          v.segment<3>(kForceRow) = -in.f;
-        } else {
-          v.segment<3>(kForceRow).setZero();
+        v(kAsymmetry) = gyro ? -in.w_size(i) : -in.f_size(i);
+        v.template segment<3>(kForceRow) =
+            gyro ? Vec3<double>(-in.f) : Vec3<double>(-(K_a.row(i) * in.of_place).transpose());
+        v.template segment<kSharedPlaces>(kOwnPlaces) = gyro ? dr_g.row(i).transpose() : dr_a.row(i).transpose();
+        if constexpr (kRows == Rows::kThermal) {
+          double power = 1.0;
+          for (int order = 0; order < kOrders; ++order) {
+            power *= t;
+            v(kThermalPlace + order) = -power;
+            v(kThermalPlace + kOrders + order) = gyro ? -power * in.w(i) : -power * in.f(i);
+          }
         }
-        v.segment<kSharedPlaces>(kOwnPlaces) = gyro ? dr_g.row(i).transpose() : dr_a.row(i).transpose();
-        v(kPlaces) = residual;
-        const Row e = filter.innovate(v);
-        pass.row_normal[static_cast<std::size_t>(row)].add(e);
-        innovation = e(kPlaces);
+        constexpr int kResidual = Pass<kRows>::kRow - 1;
+        v(kResidual) = residual;
+        const auto e = filter.innovate(v);
+        innovation = e(kResidual);
+        pass.row_normal[static_cast<std::size_t>(row)].add(weights_.empty() ? e : e * std::sqrt(weight));
       } else {
         innovation = filter.innovate(Eigen::Matrix<double, 1, 1>(residual))(0);
       }
-      pass.cost += innovation * innovation;
+      pass.cost += weight * innovation * innovation;
       visit(k, row, residual, innovation);
     }
   }
@@ -343,7 +372,7 @@ void RecordingModel::advance(Pass<kWithRows>& pass, VisitRow&& visit) const {
 
 /// Mean input over the window's samples, and its derivatives. @return whether the rig moves in it
 template <bool kWithRows>
-bool RecordingModel::window_input(const Model& model, const ObservationWindow& window, double offset,
+bool RecordingModel::window_input(const Model& model, const ObservationWindow& window, double offset, bool has_places,
                                   WindowInput& in) const {
   const EncoderCourse& course = recording_.data.course;
   std::array<std::array<CourseValue, 2>, kWindowNodes> reading;
@@ -373,6 +402,9 @@ bool RecordingModel::window_input(const Model& model, const ObservationWindow& w
   in.f.setZero();
   in.w3.setZero();
   in.f2.setZero();
+  in.w_size.setZero();
+  in.f_size.setZero();
+  in.of_place.setZero();
   for (std::size_t n = 0; n < nodes; ++n) {
     const InertialSample<double> input =
         model.plain.table.input(motion<double>(reading[n][0]), motion<double>(reading[n][1]), model.plain.lever);
@@ -382,6 +414,15 @@ bool RecordingModel::window_input(const Model& model, const ObservationWindow& w
     in.f += weight[n] * f;
     in.w3 += weight[n] * w.cwiseProduct(w).cwiseProduct(w);
     in.f2 += weight[n] * f.cwiseProduct(f);
+    in.w_size += weight[n] * w.cwiseAbs();
+    in.f_size += weight[n] * f.cwiseAbs();
+    for (int i = 0; has_places && i < 3; ++i) {
+      // the force is linear in the lever arm
+      const Vec3<double> farther = model.plain.lever + Vec3<double>(model.C_bp.row(i).transpose());
+      const InertialSample<double> there =
+          model.plain.table.input(motion<double>(reading[n][0]), motion<double>(reading[n][1]), farther);
+      in.of_place.col(i) += weight[n] * (model.C_bp * (there.f - input.f));
+    }
   }
   if constexpr (kWithRows) {
     in.dw.setZero();
@@ -429,10 +470,16 @@ void RecordingModel::add_derivatives(const Model& model, const std::array<Course
   in.df2 += (2.0 * weight * f).asDiagonal() * df;
 }
 
-/// Adds the normal matrix of one sensor to that of all unknowns.
+/// Adds the normal matrices of the sensors to that of all unknowns.
+template <RecordingModel::Rows kRows>
+void RecordingModel::scatter(Pass<kRows>& pass, Eigen::MatrixXd& into) const {
+  for (int row = 0; row < 6; ++row) scatter_row(row, pass.row_normal[static_cast<std::size_t>(row)].total(), into);
+}
+
 template <class RowNormal>
-void RecordingModel::scatter(int row, const RowNormal& normal, Eigen::MatrixXd& into) const {
-  std::array<int, kRow> place;
+void RecordingModel::scatter_row(int row, const RowNormal& normal, Eigen::MatrixXd& into) const {
+  constexpr int kRow = RowNormal::RowsAtCompileTime;
+  std::array<int, static_cast<std::size_t>(kRow)> place;
   place.fill(-1);
   const int i = row % 3;
   const bool gyro = row < 3;
@@ -443,6 +490,17 @@ void RecordingModel::scatter(int row, const RowNormal& normal, Eigen::MatrixXd& 
     place[static_cast<std::size_t>(kMatrix + j)] = gyro ? layout_.gyro_matrix + 3 * i + j : layout_.accel_matrix[i][j];
     if (gyro && layout_.g_sensitivity >= 0)
       place[static_cast<std::size_t>(kForceRow + j)] = layout_.g_sensitivity + 3 * i + j;
+    if (!gyro && layout_.accel_place >= 0 && i > 0)
+      place[static_cast<std::size_t>(kForceRow + j)] = layout_.accel_place + 3 * (i - 1) + j;
+  }
+  const int asymmetry = gyro ? layout_.gyro_asymmetry : layout_.accel_asymmetry;
+  if (asymmetry >= 0) place[kAsymmetry] = asymmetry + i;
+  if constexpr (kRow == static_cast<int>(Rows::kThermal)) {
+    for (int k = 0; k < layout_.thermal_order; ++k) {
+      const int bias = layout_.thermal + 12 * k + row;
+      place[static_cast<std::size_t>(kThermalPlace + k)] = bias;
+      place[static_cast<std::size_t>(kThermalPlace + kOrders + k)] = bias + 6;
+    }
   }
   const int higher = gyro ? layout_.gyro_cubic : layout_.accel_quadratic;
   if (higher >= 0) place[kHigherOrder] = higher + i;
@@ -457,7 +515,7 @@ void RecordingModel::scatter(int row, const RowNormal& normal, Eigen::MatrixXd& 
   shared(kLever, layout_.lever_arm[m], 3);
   shared(kGravity, layout_.gravity, 1);
   shared(kMountPlace, layout_.mount_error[m], 3);
-  place[kPlaces] = layout_.size();
+  place[kRow - 1] = layout_.size();
   for (int a = 0; a < kRow; ++a) {
     for (int b = 0; b <= a; ++b) {
       const int pa = place[static_cast<std::size_t>(a)];

@@ -3,8 +3,9 @@
 /// @file
 /// One recording against the model: residuals of its windows, whitened, and their normal equations.
 ///
-/// A row (one sensor of one window) depends on 24 unknowns only: eight of its own sensor, thirteen of the rig and three
-/// of the mount. Rig derivatives come from the rung-1 table in automatic-differentiation numbers; the rest is linear.
+/// A row (one sensor of one window) depends on 25 unknowns only: nine of its own sensor, thirteen of the rig and three
+/// of the mount; with terms of temperature on ten more of its sensor. Rig derivatives come from the rung-1 table in
+/// automatic-differentiation numbers; the rest is linear.
 
 #pragma once
 
@@ -23,6 +24,10 @@ namespace trunnion::calibration {
 
 class RecordingModel {
  public:
+  /// What a pass carries along with the residual, which is counted: nothing, or derivatives without those of
+  /// temperature or with them.
+  enum class Rows : int { kNone = 1, kPlain = 26, kThermal = 36 };
+
   /// @param index of the recording in the layout. @param clock_offset where the encoders are looked for first [s] The
   /// references must outlive the model.
   RecordingModel(const TableRecording& recording, std::size_t index, const Rig& rig, const Site& site,
@@ -42,8 +47,12 @@ class RecordingModel {
   [[nodiscard]] std::vector<std::array<float, 6>>& inflation() { return inflation_; }
   [[nodiscard]] const std::vector<std::array<float, 6>>& inflation() const { return inflation_; }
 
-  /// Sum of the squared innovations. With @p normal also adds J^T J, J^T r and r^T r over (unknowns, residual).
-  double evaluate(const CalibrationValues& values, Eigen::MatrixXd* normal) const;
+  /// A weight for each window, rows and cost times it; empty: one.
+  void set_weights(std::vector<float> weights) { weights_ = std::move(weights); }
+
+  /// Sum of the squared innovations, weighted. With @p normal also adds J^T J, J^T r and r^T r over (unknowns,
+  /// residual). @param power of the weights: 2 for the covariance of a weighted sum
+  double evaluate(const CalibrationValues& values, Eigen::MatrixXd* normal, int power = 1) const;
 
   using Visit = std::function<void(std::size_t window, int row, double residual, double innovation)>;
   /// Calls @p visit for every row.
@@ -64,11 +73,11 @@ class RecordingModel {
  private:
   struct Model;
   struct WindowInput;
-  template <bool kWithRows>
+  template <Rows kRows>
   struct Pass;
 
  public:
-  /// Normal equations at one estimate, to which windows are added as they come.
+  /// Normal equations at one estimate, to which windows are added as they come. Without terms of temperature.
   class Linearisation {
    public:
     /// The model must outlive it.
@@ -82,24 +91,27 @@ class RecordingModel {
 
    private:
     const RecordingModel* model_;
-    std::unique_ptr<Pass<true>> pass_;
+    std::unique_ptr<Pass<Rows::kPlain>> pass_;
   };
 
  private:
   [[nodiscard]] double variance(std::size_t k, int row, bool moving) const;
   template <class T>
   [[nodiscard]] AxisMotion<T> motion(const CourseValue& reading) const;
-  template <bool kWithRows, class VisitRow>
-  double run(const CalibrationValues& values, Eigen::MatrixXd* normal, VisitRow&& visit) const;
-  template <bool kWithRows, class VisitRow>
-  void advance(Pass<kWithRows>& pass, VisitRow&& visit) const;
+  template <Rows kRows, class VisitRow>
+  double run(const CalibrationValues& values, Eigen::MatrixXd* normal, int power, VisitRow&& visit) const;
+  template <Rows kRows, class VisitRow>
+  void advance(Pass<kRows>& pass, VisitRow&& visit) const;
   [[nodiscard]] std::size_t mount() const { return static_cast<std::size_t>(recording_.mount); }
   template <bool kWithRows>
-  bool window_input(const Model& model, const ObservationWindow& window, double offset, WindowInput& in) const;
+  bool window_input(const Model& model, const ObservationWindow& window, double offset, bool has_places,
+                    WindowInput& in) const;
   void add_derivatives(const Model& model, const std::array<CourseValue, 2>& reading, double weight,
                        WindowInput& in) const;
+  template <Rows kRows>
+  void scatter(Pass<kRows>& pass, Eigen::MatrixXd& into) const;
   template <class RowNormal>
-  void scatter(int row, const RowNormal& normal, Eigen::MatrixXd& into) const;
+  void scatter_row(int row, const RowNormal& normal, Eigen::MatrixXd& into) const;
 
   const TableRecording& recording_;
   std::size_t index_;
@@ -110,6 +122,7 @@ class RecordingModel {
   const Layout& layout_;
   std::vector<std::size_t> usable_;
   std::vector<std::array<float, 6>> inflation_;
+  std::vector<float> weights_;
   UnitNoise noise_;
   double encoder_variance_ = 0.0;  // of a window's mean rate
   double angle_variance_ = 0.0;    // of a window's mean angle, as one of many in a rest

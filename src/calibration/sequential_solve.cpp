@@ -30,7 +30,9 @@ constexpr double kFloor = 1e-300;
 }  // namespace
 
 struct SequentialSolve::State {
-  State(const Rig& r, const Site& s, TableSolveOptions o) : rig(r), site(s), options(std::move(o)) {}
+  State(const Rig& r, const Site& s, TableSolveOptions o) : rig(r), site(s), options(std::move(o)) {
+    options.terms.temperature = 0;  // its range is not known before the end: the batch solve has them
+  }
 
   [[nodiscard]] std::size_t usable() const {
     std::size_t windows = 0;

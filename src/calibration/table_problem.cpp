@@ -23,6 +23,10 @@ constexpr double kHuber = 4.0;               // sigmas
 constexpr int kRobustRounds = 4;
 constexpr double kWrongModel = 2.0;  // reduced chi-square of a recording
 constexpr int kCoarseStride = 16;    // windows
+constexpr std::size_t kTemperatureBins = 20;
+constexpr double kMostWeight = 16.0;
+constexpr double kMostBlind = 0.1;   // of the windows, without a temperature
+constexpr double kLeastRange = 1.0;  // K
 constexpr double kNoiseStep = 1.0;   // s, of the residual series that the wander is estimated from
 
 /// One recording as one block of the Ceres problem, in square-root information form: n + 1 residuals stand for all its
@@ -95,11 +99,12 @@ class PriorCost final : public ceres::CostFunction {
 
 TableProblem::TableProblem(const std::vector<TableRecording>& recordings, const Rig& rig, const Site& site,
                            const TableSolveOptions& options, bool running)
-    : recordings_(recordings), rig_(rig), options_(options), layout_(request()) {
+    : recordings_(recordings), rig_(rig), options_(options), temperature_(range_of(recordings)), layout_(request()) {
   if (recordings.size() > kMaxRecordings)
     throw Error(ExitCode::kInput, "more than " + std::to_string(kMaxRecordings) + " recordings in one run");
   start_.gravity = site.gravity;
   start_.clock_offset = options.clock_offset;
+  if (layout_.thermal_order > 0) start_.unit.thermal.reference = temperature_.reference();
   for (std::size_t m = 0; m < kMaxMounts; ++m) start_.lever_arm[m] = rig.mount[m].lever_p;
   for (std::size_t r = 0; r < recordings.size(); ++r) {
     models_.push_back(std::make_unique<RecordingModel>(recordings[r], r, rig, site, layout_, options.clock_offset));
@@ -122,6 +127,7 @@ TableProblem::TableProblem(const std::vector<TableRecording>& recordings, const 
                                         " times as fast as the encoders: wrong unit or nominal scale of one of them");
     }
   }
+  if (layout_.thermal_order > 0) weigh_evenly();
   priors_.push_back(gravity_prior(layout_, site));
   if (running) add_wide_priors();
 }
@@ -202,6 +208,47 @@ void add_prior_information(const Layout& layout, const std::vector<Prior>& prior
   information(layout.heading, layout.heading) += 1.0 / (circle * circle);
 }
 
+/// Temperatures that a recording stays at for long would carry a polynomial's fit: each twentieth of the range has the
+/// same weight, be it long or short, within a factor of kMostWeight. The weights' mean is one.
+/// docs/theory/calibration.md, eq. 38.
+void TableProblem::weigh_evenly() {
+  std::array<double, kTemperatureBins> count{};
+  const auto bin = [&](double celsius) {
+    const double at = (celsius - temperature_.lowest) / (temperature_.highest - temperature_.lowest);
+    return std::min(static_cast<std::size_t>(kTemperatureBins * at), kTemperatureBins - 1);
+  };
+  double windows = 0.0;
+  for (const auto& model : models_) {
+    for (std::size_t k = 0; k < model->windows(); ++k) ++count[bin(model->window(k).temperature)];
+    windows += static_cast<double>(model->windows());
+  }
+  const auto filled = static_cast<double>(std::count_if(count.begin(), count.end(), [](double n) { return n > 0.0; }));
+  std::array<double, kTemperatureBins> weight{};
+  double sum = 0.0;
+  for (std::size_t b = 0; b < count.size(); ++b) {
+    if (count[b] > 0.0) weight[b] = std::clamp(windows / filled / count[b], 1.0 / kMostWeight, kMostWeight);
+    sum += count[b] * weight[b];
+  }
+  for (const auto& model : models_) {
+    std::vector<float> weights(model->windows());
+    for (std::size_t k = 0; k < weights.size(); ++k)
+      weights[k] = static_cast<float>(weight[bin(model->window(k).temperature)] * windows / sum);
+    model->set_weights(std::move(weights));
+  }
+}
+
+TemperatureRange range_of(const std::vector<TableRecording>& recordings) {
+  TemperatureRange range;
+  for (const TableRecording& recording : recordings) {
+    for (const ObservationWindow& window : recording.data.windows) {
+      if (!std::isfinite(window.temperature)) continue;
+      range.lowest = range.is_known() ? std::min(range.lowest, window.temperature) : window.temperature;
+      range.highest = range.is_known() ? std::max(range.highest, window.temperature) : window.temperature;
+    }
+  }
+  return range;
+}
+
 LayoutRequest TableProblem::request() const {
   std::vector<int> mounts;
   double largest_rate = 1e-3;
@@ -210,7 +257,24 @@ LayoutRequest TableProblem::request() const {
     for (const ObservationWindow& window : recording.data.windows)
       largest_rate = std::max(largest_rate, window.mean.w.cwiseAbs().maxCoeff());
   }
-  return layout_request(options_, rig_, mounts, largest_rate);
+  if (options_.terms.temperature > 0) {
+    for (const TableRecording& recording : recordings_) {
+      const auto& windows = recording.data.windows;
+      const auto blind = std::count_if(windows.begin(), windows.end(),
+                                       [](const ObservationWindow& w) { return !std::isfinite(w.temperature); });
+      if (static_cast<double>(blind) > kMostBlind * static_cast<double>(windows.size()))
+        throw Error(ExitCode::kInput, recording.data.name + ": states no temperature" +
+                                          (blind < static_cast<long>(windows.size()) ? " for part of its time" : "") +
+                                          ": the model's temperature needs one");
+    }
+    if (!(temperature_.highest - temperature_.lowest > kLeastRange))
+      throw Error(ExitCode::kInput, "the recordings' temperature moves by " +
+                                        std::to_string(temperature_.highest - temperature_.lowest) +
+                                        " K: too little for the model's temperature");
+  }
+  LayoutRequest request = layout_request(options_, rig_, mounts, largest_rate);
+  request.temperature = temperature_;
+  return request;
 }
 
 std::string TableProblem::span(const TableRecording& recording) {
@@ -386,6 +450,7 @@ void TableProblem::hold_against_the_data(Observability& observability, const Fit
 Solution TableProblem::conclude(const UnitNoise& noise, int iterations) {
   const int n = layout_.size();
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(n, n);
+  Eigen::MatrixXd squared = Eigen::MatrixXd::Zero(n + 1, n + 1);  // of weighted rows, with the weights' squares
   double cost = 0.0;
   double rows = 0.0;
   Fit worst;
@@ -393,6 +458,7 @@ Solution TableProblem::conclude(const UnitNoise& noise, int iterations) {
     Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(n + 1, n + 1);
     model->evaluate(start_, &normal);
     information += normal.topLeftCorner(n, n);
+    if (layout_.thermal_order > 0) model->evaluate(start_, &squared, 2);
     cost += normal(n, n);
     rows += 6.0 * static_cast<double>(model->windows());
     const double chi_square = normal(n, n) / (6.0 * static_cast<double>(model->windows()));
@@ -413,12 +479,22 @@ Solution TableProblem::conclude(const UnitNoise& noise, int iterations) {
                   "mount of each recording, the zeros, signs and units of the encoders:\n" +
                       beyond);
     }
+    if (layout_.thermal_order > 0) {
+      Eigen::MatrixXd middle = squared.topLeftCorner(n, n);
+      add_prior_information(layout_, priors_, middle);
+      const Eigen::MatrixXd& C = solution.observability.covariance;
+      solution.observability.covariance = C * middle * C;
+    }
     hold_against_the_data(solution.observability, worst, cost / freedom);
   }
   solution.noise = noise;
   solution.gauge = {"pitch_encoder_zero", request().mounts.front() + "_datum"};
   CalibrationRecord& record = solution.record;
   record.value = start_;
+  if (layout_.thermal_order > 0) {
+    record.value.unit.thermal.lowest = temperature_.lowest;
+    record.value.unit.thermal.highest = temperature_.highest;
+  }
   record.value.rig.heading = std::remainder(record.value.rig.heading, 2.0 * kPi);
   record.sigma = layout_.sigmas(solution.observability.covariance);
   record.has_rig = true;

@@ -27,6 +27,9 @@ struct Prior {
 LayoutRequest layout_request(const TableSolveOptions& options, const Rig& rig, const std::vector<int>& mounts,
                              double largest_rate);
 
+/// Of the windows.
+TemperatureRange range_of(const std::vector<TableRecording>& recordings);
+
 Prior gravity_prior(const Layout& layout, const Site& site);
 
 /// What is known before: the priors, and that a heading is on the circle. It may be anything there, and is nobody's
@@ -61,6 +64,7 @@ class TableProblem {
   [[nodiscard]] LayoutRequest request() const;
   static std::string span(const TableRecording& recording);
   void say(const char* stage) const;
+  void weigh_evenly();
   void set_noise(const UnitNoise& noise);
   void set_stride(std::size_t stride);
   [[nodiscard]] UnitNoise rest_noise() const;
@@ -76,6 +80,7 @@ class TableProblem {
   const std::vector<TableRecording>& recordings_;
   const Rig& rig_;
   const TableSolveOptions& options_;
+  TemperatureRange temperature_;
   Layout layout_;
   CalibrationValues start_;  // and, after each minimise(), the current estimate
   std::vector<std::unique_ptr<RecordingModel>> models_;

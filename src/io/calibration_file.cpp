@@ -5,6 +5,7 @@
 
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -36,11 +37,14 @@ Json unit_tree(const InertialUnit<double>& unit, bool sigma, const char* part) {
     tree["bias_rad_s"] = list(unit.gyro.bias, sigma);
     tree["matrix"] = matrix(unit.gyro);
     tree["cubic_s2_rad2"] = list(unit.gyro.cubic, sigma);
+    if (!unit.gyro.asymmetry.isZero(0.0)) tree["asymmetry"] = list(unit.gyro.asymmetry, sigma);
     tree["g_sensitivity_s_m"] = rows(unit.g_sensitivity, sigma);
   } else {
     tree["bias_m_s2"] = list(unit.accel.bias, sigma);
     tree["matrix"] = matrix(unit.accel);
     tree["quadratic_s2_m"] = list(unit.accel.quadratic, sigma);
+    if (!unit.accel.asymmetry.isZero(0.0)) tree["asymmetry"] = list(unit.accel.asymmetry, sigma);
+    if (!unit.accel_place.isZero(0.0)) tree["place_m"] = rows(unit.accel_place.transpose(), sigma);
   }
   return tree;
 }
@@ -62,12 +66,24 @@ Json rig_tree(const CalibrationValues& v, const std::vector<std::string>& mounts
   return tree;
 }
 
-Json temperature_tree(const ThermalBias<double>& thermal) {
-  return {{"reference_deg_c", thermal.reference},
-          {"gyroscope_bias_rad_s_per_k", list(thermal.linear.w)},
-          {"gyroscope_bias_rad_s_per_k2", list(thermal.quadratic.w)},
-          {"accelerometer_bias_m_s2_per_k", list(thermal.linear.f)},
-          {"accelerometer_bias_m_s2_per_k2", list(thermal.quadratic.f)}};
+/// "gyroscope_bias_rad_s_per_k2" of the second order.
+std::string thermal_key(const char* of, std::size_t order) {
+  return std::string(of) + "_per_k" + (order > 1 ? std::to_string(order) : "");
+}
+
+Json temperature_tree(const ThermalErrors<double>& thermal, int order, bool sigma) {
+  Json tree;
+  if (!sigma) {
+    tree["reference_deg_c"] = thermal.reference;
+    if (std::isfinite(thermal.lowest)) tree["range_deg_c"] = Json::array({thermal.lowest, thermal.highest});
+  }
+  for (std::size_t k = 1; k <= static_cast<std::size_t>(order); ++k) {
+    tree[thermal_key("gyroscope_bias_rad_s", k)] = list(thermal.bias[k - 1].w, sigma);
+    tree[thermal_key("accelerometer_bias_m_s2", k)] = list(thermal.bias[k - 1].f, sigma);
+    tree[thermal_key("gyroscope_scale", k)] = list(thermal.scale[k - 1].w, sigma);
+    tree[thermal_key("accelerometer_scale", k)] = list(thermal.scale[k - 1].f, sigma);
+  }
+  return tree;
 }
 
 Json geometry_tree(const Triad<double>& triad) {
@@ -84,9 +100,11 @@ Json tree_of(const CalibrationFile& file) {
   tree["imu"] = {{"model", file.model}, {"serial", file.serial}};
   tree["gyroscope"] = unit_tree(r.value.unit, false, "gyroscope");
   tree["accelerometer"] = unit_tree(r.value.unit, false, "accelerometer");
-  if (!r.value.unit.thermal.is_zero()) tree["temperature"] = temperature_tree(r.value.unit.thermal);
+  const int thermal_order = r.value.unit.thermal.order();
+  if (thermal_order > 0) tree["temperature"] = temperature_tree(r.value.unit.thermal, thermal_order, false);
   tree["sigma"] = {{"gyroscope", unit_tree(r.sigma.unit, true, "gyroscope")},
                    {"accelerometer", unit_tree(r.sigma.unit, true, "accelerometer")}};
+  if (thermal_order > 0) tree["sigma"]["temperature"] = temperature_tree(r.sigma.unit.thermal, thermal_order, true);
   if (r.has_rig) {
     tree["sigma"]["rig"] = rig_tree(r.sigma, file.mounts, true);
     tree["rig"] = rig_tree(r.value, file.mounts, false);
@@ -153,13 +171,16 @@ void read_triads(const StrictYaml& root, bool sigma, InertialUnit<double>& unit)
     return M;
   };
   const StrictYaml gyro = root.at("gyroscope");
-  gyro.only({"bias_rad_s", "matrix", "cubic_s2_rad2", "g_sensitivity_s_m"});
+  gyro.only({"bias_rad_s", "matrix", "cubic_s2_rad2", "g_sensitivity_s_m", "asymmetry"});
   unit.gyro.bias = gyro.at("bias_rad_s").vector(scalar);
   unit.gyro.M = matrix(gyro.at("matrix"));
   if (gyro.has("cubic_s2_rad2")) unit.gyro.cubic = gyro.at("cubic_s2_rad2").vector(scalar);
   if (gyro.has("g_sensitivity_s_m")) unit.g_sensitivity = gyro.at("g_sensitivity_s_m").matrix(scalar);
+  if (gyro.has("asymmetry")) unit.gyro.asymmetry = gyro.at("asymmetry").vector(scalar);
   const StrictYaml accel = root.at("accelerometer");
-  accel.only({"bias_m_s2", "matrix", "quadratic_s2_m"});
+  accel.only({"bias_m_s2", "matrix", "quadratic_s2_m", "asymmetry", "place_m"});
+  if (accel.has("asymmetry")) unit.accel.asymmetry = accel.at("asymmetry").vector(scalar);
+  if (accel.has("place_m")) unit.accel_place = accel.at("place_m").matrix(scalar).transpose();
   unit.accel.bias = accel.at("bias_m_s2").vector(scalar);
   unit.accel.M = matrix(accel.at("matrix"));
   if (accel.has("quadratic_s2_m")) unit.accel.quadratic = accel.at("quadratic_s2_m").vector(scalar);
@@ -170,14 +191,30 @@ void read_triads(const StrictYaml& root, bool sigma, InertialUnit<double>& unit)
   }
 }
 
-void read_temperature(const StrictYaml& node, ThermalBias<double>& thermal) {
-  node.only({"reference_deg_c", "gyroscope_bias_rad_s_per_k", "gyroscope_bias_rad_s_per_k2",
-             "accelerometer_bias_m_s2_per_k", "accelerometer_bias_m_s2_per_k2"});
-  thermal.reference = node.at("reference_deg_c").number_in(-273.15, 1000.0);
-  thermal.linear = {node.at("gyroscope_bias_rad_s_per_k").vector(), node.at("accelerometer_bias_m_s2_per_k").vector()};
-  if (node.has("gyroscope_bias_rad_s_per_k2")) thermal.quadratic.w = node.at("gyroscope_bias_rad_s_per_k2").vector();
-  if (node.has("accelerometer_bias_m_s2_per_k2"))
-    thermal.quadratic.f = node.at("accelerometer_bias_m_s2_per_k2").vector();
+void read_temperature(const StrictYaml& node, bool sigma, ThermalErrors<double>& thermal) {
+  const StrictYaml::Scalar scalar = sigma ? &StrictYaml::sigma : &StrictYaml::number;
+  std::vector<std::string> known;
+  if (!sigma) {
+    known = {"reference_deg_c", "range_deg_c"};
+    thermal.reference = node.at("reference_deg_c").number_in(-273.15, 1000.0);
+    if (node.has("range_deg_c")) {
+      const StrictYaml range = node.at("range_deg_c");
+      if (range.length() != 2) range.fail("should be two temperatures");
+      thermal.lowest = range.at(0).number_in(-273.15, 1000.0);
+      thermal.highest = range.at(1).number_in(thermal.lowest, 1000.0);
+    }
+  }
+  for (std::size_t k = 1; k <= ThermalErrors<double>::kMostOrder; ++k) {
+    const auto read = [&](const char* of, Vec3<double>& into) {
+      known.push_back(thermal_key(of, k));
+      if (node.has(known.back())) into = node.at(known.back()).vector(scalar);
+    };
+    read("gyroscope_bias_rad_s", thermal.bias[k - 1].w);
+    read("accelerometer_bias_m_s2", thermal.bias[k - 1].f);
+    read("gyroscope_scale", thermal.scale[k - 1].w);
+    read("accelerometer_scale", thermal.scale[k - 1].f);
+  }
+  node.only(known);
 }
 
 void read_rig(const StrictYaml& rig, bool sigma, CalibrationValues& v, std::vector<std::string>& mounts) {
@@ -234,13 +271,14 @@ CalibrationFile read_calibration_file(const std::string& path) {
   }
   CalibrationRecord& r = file.record;
   read_triads(root, false, r.value.unit);
-  if (root.has("temperature")) read_temperature(root.at("temperature"), r.value.unit.thermal);
+  if (root.has("temperature")) read_temperature(root.at("temperature"), false, r.value.unit.thermal);
   r.has_rig = root.has("rig");
   if (r.has_rig) read_rig(root.at("rig"), false, r.value, file.mounts);
   if (root.has("sigma")) {
     const StrictYaml sigma = root.at("sigma");
-    sigma.only({"gyroscope", "accelerometer", "rig"});
+    sigma.only({"gyroscope", "accelerometer", "temperature", "rig"});
     read_triads(sigma, true, r.sigma.unit);
+    if (sigma.has("temperature")) read_temperature(sigma.at("temperature"), true, r.sigma.unit.thermal);
     if (sigma.has("rig") && r.has_rig) read_rig(sigma.at("rig"), true, r.sigma, file.mounts);
   }
   r.mounts = static_cast<int>(file.mounts.size());

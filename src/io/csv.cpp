@@ -35,9 +35,11 @@ constexpr std::array<Unit, 3> kForceUnits = {
 constexpr std::array<Unit, 2> kAngleUnits = {{{"rad", "_rad", 1.0}, {"deg", "_deg", kRadPerDeg}}};
 constexpr std::array<Unit, 1> kLengthUnits = {{{"m", "_m", 1.0}}};
 constexpr std::array<Unit, 1> kFrequencyUnits = {{{"Hz", "_hz", 1.0}}};
+constexpr std::array<Unit, 1> kTemperatureUnits = {{{"deg_c", "_deg_c", 1.0}}};
 constexpr std::array<Unit, 1> kNumberUnits = {{{"", "", 1.0}}};
 constexpr double kLargestReading = 1e6;  // rad/s, m/s^2, rad
 constexpr const char* kCounts = "counts";
+constexpr const char* kTemperature = "temperature";
 constexpr std::array<const char*, 6> kSensors = {"gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z"};
 
 struct Units {
@@ -54,6 +56,7 @@ Units units_of(const std::string& quantity) {
     return {kTimeUnits.data(), kTimeUnits.size()};
   if (quantity.rfind("gyro_", 0) == 0 || ends_with("_rate")) return {kRateUnits.data(), kRateUnits.size()};
   if (ends_with("_frequency")) return {kFrequencyUnits.data(), kFrequencyUnits.size()};
+  if (quantity == "temperature") return {kTemperatureUnits.data(), kTemperatureUnits.size()};
   if (quantity == "recording") return {kNumberUnits.data(), kNumberUnits.size()};
   if (quantity.rfind("accel_", 0) == 0) return {kForceUnits.data(), kForceUnits.size()};
   if (quantity == "h") return {kLengthUnits.data(), kLengthUnits.size()};
@@ -170,6 +173,9 @@ class Table {
 
   [[nodiscard]] long long line() const { return line_; }
   [[nodiscard]] bool has_header() const { return !names_.empty(); }
+  [[nodiscard]] bool has_column(const std::string& name) const {
+    return std::find(names_.begin(), names_.end(), name) != names_.end();
+  }
   [[nodiscard]] const std::string& path() const { return path_; }
 
  private:
@@ -293,9 +299,12 @@ void read_imu_csv(const std::string& path, const ColumnMap& columns, const Senso
   Table table(path, digest);
   std::vector<std::string> quantities = {"t"};
   quantities.insert(quantities.end(), kSensors.begin(), kSensors.end());
+  const bool has_temperature = columns.count(kTemperature) != 0 || table.has_column("temperature_deg_c");
+  if (has_temperature) quantities.emplace_back(kTemperature);
   table.choose(quantities, columns, sheet);
-  std::array<double, 7> v{};
+  std::array<double, 8> v{};
   while (table.row(v.data())) {
+    if (has_temperature) sink.temperature(v[7]);
     sink.imu(to_utime(v[0], table), {Vec3<double>(v[1], v[2], v[3]), Vec3<double>(v[4], v[5], v[6])});
   }
 }

@@ -25,7 +25,9 @@ constexpr long long kEventsPerProgress = 100000;
 constexpr std::size_t kNamedChannels = 20;  // in a message
 constexpr double kTolerableDamage = 1e-3;   // messages that cannot be decoded, against those that can
 constexpr double kLargestReading = 1e6;     // rad/s, m/s^2
-constexpr double kLargestAngle = 1e7;       // rad
+constexpr double kColdest = -273.15;        // degC
+constexpr double kHottest = 1000.0;
+constexpr double kLargestAngle = 1e7;  // rad
 
 }  // namespace
 
@@ -46,6 +48,7 @@ void LcmDecoder::imu(const LcmEvent& event) {
       sample.f(i) = load_double(p + 48 + 8 * i);
     }
     imu_sequence_.add(load_i64(p + kSequence));
+    tell_temperature(load_double(p + kImuBytes - 8));
     deliver(event, load_i64(p + 8), sample);
   } else if (fingerprint == kImuBatchFingerprint && event.data.size() >= kBatchHead) {
     batch(event);
@@ -59,6 +62,7 @@ void LcmDecoder::imu(const LcmEvent& event) {
       sample.f(static_cast<int>(i)) = (raw->counts[i + 3] - counts_.accel.zero) / counts_.accel.scale;
     }
     imu_sequence_.add(raw->sequence);
+    tell_temperature(raw->celsius());
     deliver(event, raw->utime, sample);
   } else {
     damage(event, foreign(event, fingerprint,
@@ -117,6 +121,14 @@ void LcmDecoder::deliver(const LcmEvent& event, std::int64_t utime, const Inerti
   sink_.imu(utime, sample);
 }
 
+/// What is no temperature is not known.
+void LcmDecoder::tell_temperature(double celsius) {
+  const bool known = celsius > kColdest && celsius < kHottest;
+  if (!known && !told_temperature_) return;
+  told_temperature_ = known;
+  sink_.temperature(known ? celsius : std::nan(""));
+}
+
 /// Names the number that is none, or beyond any sensor.
 void LcmDecoder::doubt(const LcmEvent& event, const InertialSample<double>& sample) {
   for (int i = 0; i < 6; ++i) {
@@ -134,6 +146,7 @@ void LcmDecoder::batch(const LcmEvent& event) {
     return damage(event, fault(event, "num_samples", "does not fit the length of the message"));
   }
   if (n > 0) imu_sequence_.add(load_i64(p + kSequence), static_cast<std::int64_t>(n));
+  tell_temperature(load_double(p + event.data.size() - 8));
   const char* utime = p + kBatchHead;
   for (std::uint64_t k = 0; k < n; ++k) {
     InertialSample<double> sample;
@@ -237,7 +250,7 @@ void encode_imu(std::int64_t utime, std::int64_t sequence, const InertialSample<
 }
 
 void encode_imu_batch(std::int64_t sequence, const std::vector<std::int64_t>& utime,
-                      const std::vector<InertialSample<double>>& samples, std::string& out) {
+                      const std::vector<InertialSample<double>>& samples, std::string& out, double temperature) {
   out.clear();
   append_unsigned(out, kImuBatchFingerprint);
   append_i64(out, utime.empty() ? 0 : utime.back());
@@ -247,7 +260,7 @@ void encode_imu_batch(std::int64_t sequence, const std::vector<std::int64_t>& ut
   for (int i = 0; i < 6; ++i) {
     for (const auto& sample : samples) append_double(out, i < 3 ? sample.w(i) : sample.f(i - 3));
   }
-  append_double(out, std::nan(""));
+  append_double(out, temperature);
 }
 
 void encode_imu_counts(const ImuCounts& sample, std::string& out) {
@@ -269,12 +282,6 @@ std::optional<ImuCounts> decode_imu_counts(std::string_view message) {
     sample.counts[i] = static_cast<std::int32_t>(load_u32(p + kImuHead + 4 * i));
   sample.temperature = static_cast<std::int32_t>(load_u32(p + kImuHead + 24));
   return sample;
-}
-
-double temperature_of(std::string_view message) {
-  const std::uint64_t fingerprint = message.size() >= kImuHead + 8 ? fingerprint_of(message) : 0;
-  if (fingerprint != kImuFingerprint && fingerprint != kImuBatchFingerprint) return std::nan("");
-  return load_double(message.data() + message.size() - 8);
 }
 
 void encode_encoder(std::int64_t utime, std::int64_t sequence, double azimuth, double pitch, std::string& out) {

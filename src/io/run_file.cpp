@@ -34,7 +34,7 @@ std::size_t entry_index(const StrictYaml& map, const std::string& key) {
 
 ColumnMap read_columns(const StrictYaml& node) {
   ColumnMap columns;
-  node.only({"t", "gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z", "azimuth", "pitch"});
+  node.only({"t", "gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z", "azimuth", "pitch", "temperature"});
   for (const std::string& quantity : node.keys()) {
     const StrictYaml entry = node.at(quantity);
     entry.only({"column", "unit"});
@@ -81,6 +81,42 @@ PlanRequest read_plan(const StrictYaml& node) {
   return plan;
 }
 
+/// "cubic", or {temperature: 3}.
+void read_term(const StrictYaml& node, RunFile& run) {
+  if (node.is_map()) {
+    node.only({"temperature"});
+    const StrictYaml order = node.at("temperature");
+    const long long n = order.integer();
+    if (n < 1 || n > ThermalErrors<double>::kMostOrder)
+      order.fail("should be an order from 1 to " + std::to_string(ThermalErrors<double>::kMostOrder));
+    run.temperature = static_cast<int>(n);
+    return;
+  }
+  const std::string term = node.text();
+  if (term == "temperature") node.fail("has no order: write temperature: 3");
+  bool* const chosen = term == "cubic"           ? &run.cubic
+                       : term == "g_sensitivity" ? &run.g_sensitivity
+                       : term == "quadratic"     ? &run.quadratic
+                       : term == "asymmetry"     ? &run.asymmetry
+                       : term == "size_effect"   ? &run.size_effect
+                                                 : nullptr;
+  if (chosen == nullptr)
+    node.fail("unknown term '" + term + "'; did you mean '" +
+              nearest(term, {"cubic", "g_sensitivity", "quadratic", "asymmetry", "size_effect", "temperature: 3"}) +
+              "'?");
+  *chosen = true;
+}
+
+Soak read_soak(const StrictYaml& node) {
+  node.only({"from_deg_c", "to_deg_c", "k_per_min"});
+  Soak soak;
+  soak.from = node.at("from_deg_c").number_in(-100.0, 300.0);
+  soak.to = node.at("to_deg_c").number_in(-100.0, 300.0);
+  soak.rate = node.at("k_per_min").number_in(1e-3, 100.0) / 60.0;
+  if (soak.from == soak.to) node.at("to_deg_c").fail("is where the soak begins");
+  return soak;
+}
+
 RecordingFiles read_files(const StrictYaml& node, const std::string& run, bool has_rig) {
   if (!has_rig && node.has("mount")) node.at("mount").fail(kNoRig);
   node.only(has_rig ? std::vector<std::string>{"mount", "log"} : std::vector<std::string>{"log"});
@@ -109,7 +145,7 @@ RecordingFiles read_files(const StrictYaml& node, const std::string& run, bool h
 RunFile read_run_file(const std::string& path) {
   const StrictYaml root = StrictYaml::load(path, "trunnion-run/1");
   root.only({"format", "site", "rig", "axes", "sheet", "serial", "clock", "bias", "model", "refuse_above", "recordings",
-             "limits", "channels", "lcm_types", "columns", "plan", "moves"});
+             "limits", "channels", "lcm_types", "columns", "plan", "moves", "soak"});
   RunFile run;
   run.path = path;
 
@@ -145,19 +181,9 @@ RunFile read_run_file(const std::string& path) {
   }
   run.cubic = !run.rig.empty();  // hand turns are too few and too short to tell a cubic from a scale
   if (root.has("model")) {
-    run.cubic = run.g_sensitivity = run.quadratic = false;
+    run.cubic = run.g_sensitivity = false;
     const StrictYaml model = root.at("model");
-    for (std::size_t i = 0; i < model.length(); ++i) {
-      const std::string term = model.at(i).text();
-      bool* const chosen = term == "cubic"           ? &run.cubic
-                           : term == "g_sensitivity" ? &run.g_sensitivity
-                           : term == "quadratic"     ? &run.quadratic
-                                                     : nullptr;
-      if (chosen == nullptr)
-        model.at(i).fail("unknown term '" + term + "'; did you mean '" +
-                         nearest(term, {"cubic", "g_sensitivity", "quadratic"}) + "'?");
-      *chosen = true;
-    }
+    for (std::size_t i = 0; i < model.length(); ++i) read_term(model.at(i), run);
   }
   if (root.has("refuse_above")) {
     const StrictYaml refuse = root.at("refuse_above");
@@ -195,6 +221,7 @@ RunFile read_run_file(const std::string& path) {
     if (channels.has("encoder")) run.channels.encoder = read_channel(channels.at("encoder"), false, types, run.sheet);
   }
   if (root.has("plan")) run.plan = read_plan(root.at("plan"));
+  if (root.has("soak")) run.soak = read_soak(root.at("soak"));
   if (root.has("moves")) run.moves = beside(path, root.at("moves").text());
   if (root.has("columns")) run.columns = read_columns(root.at("columns"));
 

@@ -440,7 +440,7 @@ Plan predict(const Bench& bench, const std::vector<TableSequence>& recordings) {
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(n, n);
   for (std::size_t r = 0; r < recordings.size(); ++r)
     information += predictor.information(r, motion_of(recordings[r], bench.limits));
-  return {recordings, predictor.parameters(), predictor.conclude(information)};
+  return {recordings, predictor.parameters(), predictor.conclude(information), information};
 }
 
 WantedSigmas sigmas_of(const Plan& plan) {
@@ -491,25 +491,20 @@ Addition cheapest_addition(const Bench& bench, const Plan& plan, const WantedSig
       asked(i) = is_of_unit(p.kind) ? std::sqrt(plan.predicted.covariance(i, i)) : kInfinity;
     }
   }
-  std::vector<Eigen::MatrixXd> information;
-  Eigen::MatrixXd total = Eigen::MatrixXd::Zero(n, n);
-  for (std::size_t r = 0; r < plan.recordings.size(); ++r) {
-    information.push_back(predictor.information(r, motion_of(plan.recordings[r], bench.limits)));
-    total += information.back();
-  }
   Addition best;
-  best.cost_before = cost_of(predictor.sigmas(total), asked);
+  best.cost_before = cost_of(predictor.sigmas(plan.information), asked);
   double fastest = 0.0;
   for (std::size_t r = 0; r < plan.recordings.size(); ++r) {
-    const double before = simulation::duration_of(plan.recordings[r]);
     for (const Block& block : candidates(bench)) {
       if (largest_rate_of(sequence_of(bench, {block})) > 1.01 * largest_rate) continue;  // the nonlinearity's scale
-      TableSequence longer = plan.recordings[r];
-      Stand angle = end_of(longer);
-      append(bench, block, angle, longer);
-      const double seconds = simulation::duration_of(longer) - before;
+      // on its own, from where the plan ends: information is a sum, but for what the wander carries over
+      Stand angle = end_of(plan.recordings[r]);
+      TableSequence addition = {
+          {0.0, 1.0, {AxisCommand{angle[0], 0.0, 0.0, 0.0}, AxisCommand{angle[1], 0.0, 0.0, 0.0}}}};
+      append(bench, block, angle, addition);
+      const double seconds = simulation::duration_of(addition);
       const double cost = cost_of(
-          predictor.sigmas(total - information[r] + predictor.information(r, motion_of(longer, bench.limits))), asked);
+          predictor.sigmas(plan.information + predictor.information(r, motion_of(addition, bench.limits))), asked);
       const double speed = std::log(best.cost_before / cost) / seconds;
       if (!(speed > fastest)) continue;
       fastest = speed;

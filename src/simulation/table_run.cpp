@@ -16,7 +16,14 @@ namespace {
 constexpr int kSteps = 4;  // a sample
 constexpr std::int64_t kStartUtime = 1700000000000000;
 
-enum Stream : std::uint64_t { kTruth = 0, kWhite = 100, kWander = 200, kOutliers = 300, kDrops = 400 };
+enum Stream : std::uint64_t {
+  kTruth = 0,
+  kWhite = 100,
+  kWander = 200,
+  kOutliers = 300,
+  kDrops = 400,
+  kFurtherTruth = 500
+};
 
 double quantised(double value, double quantum) { return quantum > 0.0 ? quantum * std::round(value / quantum) : value; }
 
@@ -38,10 +45,10 @@ class Wander {
   Vec3<double> state_;
 };
 
-/// Attitude and position of the sensing point in inertial space.
+/// Attitude and positions of the accelerometers in inertial space: of the first alone where all are in one place.
 struct Pose {
   Quaternion<double> q_ip = Quaternion<double>::Identity();
-  Vec3<double> r_i = Vec3<double>::Zero();
+  std::array<Vec3<double>, 3> r_i;
 };
 
 /// The true table, by quaternions.
@@ -49,10 +56,15 @@ class TrueTable {
  public:
   TrueTable(const CalibrationValues& truth, const Rig& rig, const Site& site, const TableMotion& motion, int mount)
       : motion_(motion),
-        lever_p_(truth.lever_arm[static_cast<std::size_t>(mount)]),
         joint_o_(rig.geometry.pitch_joint_o),
         q_qp_(rig.geometry.C_qp),
         w_ie_u_(earth_rate_enu(site.latitude)) {
+    const Mat3<double> C_pb = rig.mount[static_cast<std::size_t>(mount)].C_pb *
+                              rotation_exp<double>(truth.mount_error[static_cast<std::size_t>(mount)]);
+    for (int i = 0; i < 3; ++i)
+      lever_p_[static_cast<std::size_t>(i)] =
+          truth.lever_arm[static_cast<std::size_t>(mount)] + C_pb * truth.unit.accel_place.col(i);
+    points_ = truth.unit.accel_place.isZero(0.0) ? 1 : 3;
     const Quaternion<double> tilt = quaternion_exp<double>(Vec3<double>(truth.rig.tilt_x, truth.rig.tilt_y, 0.0));
     const Quaternion<double> heading = quaternion_exp<double>(Vec3<double>(0.0, 0.0, truth.rig.heading));
     q_uo_ = tilt * heading * Quaternion<double>(rig.geometry.C_to);
@@ -68,9 +80,11 @@ class TrueTable {
         q_ui_turned * q_uo_ * Quaternion<double>(std::cos(0.5 * azimuth), 0.0, 0.0, std::sin(0.5 * azimuth));
     Pose pose;
     pose.q_ip = q_io * q_axes_ * Quaternion<double>(std::cos(0.5 * pitch), 0.0, std::sin(0.5 * pitch), 0.0) * q_qp_;
-    pose.r_i = q_io * joint_o_ + pose.q_ip * lever_p_;
+    for (std::size_t i = 0; i < points_; ++i) pose.r_i[i] = q_io * joint_o_ + pose.q_ip * lever_p_[i];
     return pose;
   }
+
+  [[nodiscard]] std::size_t points() const { return points_; }
 
   /// What an accelerometer at rest feels, in inertial space.
   [[nodiscard]] Vec3<double> reaction_i(double t, double gravity) const {
@@ -79,7 +93,8 @@ class TrueTable {
 
  private:
   const TableMotion& motion_;
-  Vec3<double> lever_p_;
+  std::array<Vec3<double>, 3> lever_p_;
+  std::size_t points_;
   Vec3<double> joint_o_;
   Quaternion<double> q_uo_;
   Quaternion<double> q_axes_;
@@ -105,7 +120,11 @@ TableRunSettings::TableRunSettings()
       mount_error(0.05 * kRadPerDeg),
       eccentricity(15e-6),
       lever_arm(0.04),
-      largest_clock_offset(0.004) {
+      largest_clock_offset(0.004),
+      gyro_thermal_bias(100.0 * kRadPerSPerDegPerH),
+      gyro_thermal_scale(500e-6),
+      accel_thermal_bias(1000.0 * kMetresPerS2PerMicroG),
+      accel_thermal_scale(300e-6) {
   noise.gyro = {5.0 * kRadPerSPerDegPerH, 1.5 * kRadPerSPerDegPerH, 200.0};
   noise.accel = {25.0 * kMetresPerS2PerMicroG, 20.0 * kMetresPerS2PerMicroG, 200.0};
 }
@@ -159,6 +178,27 @@ CalibrationValues draw_truth(const TableRunSettings& s, const Rig& rig, const Si
     while (direction.norm() < 0.1) direction = vector(1.0);
     truth.lever_arm[m] = rig.mount[m].lever_p + s.lever_arm * direction.normalized();
   }
+  Gaussian further(s.seed, kFurtherTruth);
+  const auto further_vector = [&](double sigma) {
+    Vec3<double> v;
+    for (int i = 0; i < 3; ++i) v(i) = sigma * further();
+    return v;
+  };
+  truth.unit.gyro.asymmetry = further_vector(s.gyro_asymmetry);
+  truth.unit.accel.asymmetry = further_vector(s.accel_asymmetry);
+  for (int i = 1; i < 3; ++i) truth.unit.accel_place.col(i) = further_vector(s.accel_place);
+  if (s.soak.is_known()) {
+    ThermalErrors<double>& thermal = truth.unit.thermal;
+    thermal.reference = std::round(0.5 * (s.soak.from + s.soak.to));
+    double power = 1.0;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(s.thermal_order); ++k) {
+      power *= std::max(std::abs(s.soak.from - thermal.reference), std::abs(s.soak.to - thermal.reference));
+      thermal.bias[k].w = further_vector(s.gyro_thermal_bias / power);
+      thermal.bias[k].f = further_vector(s.accel_thermal_bias / power);
+      thermal.scale[k].w = further_vector(s.gyro_thermal_scale / power);
+      thermal.scale[k].f = further_vector(s.accel_thermal_scale / power);
+    }
+  }
   truth.clock_offset = 1e-6 * std::round(1e6 * s.largest_clock_offset * (2.0 * draw.uniform() - 1.0));
   truth.gravity = site.gravity + (s.exact_gravity ? 0.0 : site.gravity_sigma * draw());
   for (int r = 0; r < recordings; ++r) {
@@ -194,6 +234,8 @@ void run_table(const TableRunSettings& s, const CalibrationValues& truth, const 
   InertialUnit<double> unit = truth.unit;
   unit.gyro.bias = bias.w;
   unit.accel.bias = bias.f;
+  const bool soaked = s.soak.is_known();
+  InertialUnit<double> warm;
 
   const auto samples = static_cast<long long>(std::floor(motion.duration * s.rate));
   const auto utime_of = [&](double t) { return kStartUtime + static_cast<std::int64_t>(std::llround(1e6 * t)); };
@@ -212,26 +254,37 @@ void run_table(const TableRunSettings& s, const CalibrationValues& truth, const 
 
   // poses at -h, 0, h, ... : specific force at a step needs its neighbours
   std::array<Pose, 3> pose = {table.at(-h), table.at(0.0), table.at(h)};
-  const auto force = [&](double t) {
-    const Vec3<double> r_ddot = (pose[2].r_i - 2.0 * pose[1].r_i + pose[0].r_i) / (h * h);
-    return Vec3<double>(pose[1].q_ip.conjugate() * (r_ddot + table.reaction_i(t, truth.gravity)));
+  const std::size_t points = table.points();
+  std::array<Vec3<double>, 3> f_last;
+  const auto look_at_force = [&](double t) {
+    for (std::size_t i = 0; i < points; ++i) {
+      const Vec3<double> r_ddot = (pose[2].r_i[i] - 2.0 * pose[1].r_i[i] + pose[0].r_i[i]) / (h * h);
+      f_last[i] = pose[1].q_ip.conjugate() * (r_ddot + table.reaction_i(t, truth.gravity));
+    }
   };
-  Vec3<double> f_last = force(0.0);
+  look_at_force(0.0);
   for (long long k = 1; k <= samples; ++k) {
     const double t_begin = static_cast<double>(k - 1) * period;
     Vec3<double> angle = Vec3<double>::Zero();
-    Vec3<double> f_sum = f_last;  // Simpson: 1 4 2 4 1
+    std::array<Vec3<double>, 3> f_sum = f_last;  // Simpson: 1 4 2 4 1
     for (int step = 1; step <= kSteps; ++step) {
       angle += quaternion_log<double>(pose[1].q_ip.conjugate() * pose[2].q_ip);
       const double t = t_begin + step * h;
       pose = {pose[1], pose[2], table.at(t + h)};
-      f_last = force(t);
-      f_sum += (step == kSteps ? 1.0 : step % 2 == 1 ? 4.0 : 2.0) * f_last;
+      look_at_force(t);
+      for (std::size_t i = 0; i < points; ++i)
+        f_sum[i] += (step == kSteps ? 1.0 : step % 2 == 1 ? 4.0 : 2.0) * f_last[i];
     }
     InertialSample<double> input;
     input.w = C_bp * (angle / period);
-    input.f = C_bp * (f_sum / (3.0 * kSteps));
-    InertialSample<double> reading = unit.distort(input);
+    input.f = C_bp * (f_sum[0] / (3.0 * kSteps));
+    const double celsius = s.soak.at(t_begin + 0.5 * period);
+    const InertialUnit<double>& now = soaked ? (warm = unit.at(celsius)) : unit;
+    InertialSample<double> reading = now.distort(input);
+    for (std::size_t i = 1; i < points; ++i) {
+      input.f = C_bp * (f_sum[i] / (3.0 * kSteps));
+      reading.f(static_cast<int>(i)) = now.distort(input).f(static_cast<int>(i));
+    }
     reading.w += gyro_wander.next(wandering);
     reading.f += accel_wander.next(wandering);
     for (int i = 0; i < 3; ++i) {
@@ -247,6 +300,7 @@ void run_table(const TableRunSettings& s, const CalibrationValues& truth, const 
     const double t = static_cast<double>(k) * period;
     publish_encoder(t);
     if (drop.uniform() < s.dropped_fraction) continue;
+    if (soaked && sinks.temperature) sinks.temperature(celsius);
     sinks.imu(utime_of(t + truth.clock_offset), k - 1, reading);
   }
   publish_encoder(motion.duration + encoder_period);

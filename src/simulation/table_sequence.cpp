@@ -206,6 +206,32 @@ TableSequence design_run(const AxisLimits& pitch) {
   return moves;
 }
 
+TableSequence soak(const AxisLimits& pitch, double duration, int variant) {
+  constexpr double kRest = 12.0;
+  constexpr double kTurn = 18.0;
+  constexpr double kMove = 3.0;
+  constexpr double kRamp = 2.0;
+  const double middle = pitch.endless() ? 0.0 : 0.5 * (pitch.lowest + pitch.highest);
+  const double reach = pitch.endless() ? 0.5 * kPi : 0.5 * (pitch.highest - pitch.lowest);
+  constexpr std::array<double, 4> kRestShare = {-1.0, 0.0, 1.0, 0.5};
+  constexpr std::array<double, 4> kRate = {40.0, -40.0, -20.0, 20.0};
+  constexpr std::array<double, 3> kFrequency = {0.11, 0.16, 0.21};
+  TableSequence moves = {{0.0, kMove, {stand(0.0), stand(middle)}}};
+  double azimuth = 0.0;
+  double t = 0.0;
+  for (std::size_t step = 0; t + kRest + kMove + kTurn <= duration; ++step) {
+    moves.push_back({kRest, kMove, {stand(azimuth), stand(middle + kRestShare[step % 4] * reach)}});
+    moves.push_back({kMove, kMove, {stand(azimuth), stand(middle)}});
+    const double rate = kRate[step % 4] * kRadPerDeg;
+    const double frequency = kFrequency[(step + static_cast<std::size_t>(variant)) % 3];
+    moves.push_back({kTurn, kRamp, {turn(azimuth, rate), swing(middle, 0.4 * reach, frequency)}});
+    azimuth += rate * (kTurn - kRamp);
+    t += kRest + kMove + kTurn;
+  }
+  if (duration - t > kMove) moves.push_back({duration - t, kMove, {stand(azimuth), stand(middle)}});
+  return moves;
+}
+
 TableSequence rest_only(double lowest, double highest) {
   const double middle = 0.5 * (lowest + highest);
   return {{0.0, 1.0, {stand(0.0), stand(middle)}}, {60.0, 1.0, {stand(0.0), stand(middle)}}};

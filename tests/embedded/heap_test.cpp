@@ -105,10 +105,16 @@ float turn_in_integers() {
   AngleBins<23, 1000> bins;
   TwoSpeedNavigator<float> navigator(NavigationState<float>{}, 0.01F, 5);
   Attitude<float> attitude(Quaternion<float>::Identity());
+  InertialUnit<float> unit;
+  unit.thermal.scale[4].w.x() = 1e-15F;
+  unit.accel_place(0, 1) = 0.01F;
+  StreamCorrection<float> stream(unit);
   float sum = 0.0F;
   for (int i = 1; i < 1500; ++i) {
     const UnitOutput<std::int32_t> raw{i % 7, -i % 5, 500 + i % 3, i % 11, 3, -2000};
     correction.set_temperature(i / 100);
+    stream.set_temperature(static_cast<float>(i / 100));
+    sum += stream.correct(0.0025 * i, {Vec3<float>(0.1F, 0.2F, 0.3F), Vec3<float>(1.0F, 2.0F, 9.8F)}).f.sum();
     if (watch.look(raw) == Status::kSaturated) demodulator.mark_saturated();
     const auto counts = correction.correct(raw);
     const EncoderPhase::Step step = encoder.add(static_cast<BinaryAngle>(i) * 21474836U);

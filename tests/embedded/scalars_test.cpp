@@ -26,6 +26,11 @@ template class UnitCorrection<float>;
 template class UnitCorrection<double>;
 template class UnitCorrection<long double>;
 template class UnitCorrection<Jet>;
+template class ThermalCorrection<float>;
+template class ThermalCorrection<double>;
+template class SizeEffect<float>;
+template class StreamCorrection<float>;
+template class StreamCorrection<double>;
 template struct EncoderEccentricity<float>;
 template struct EncoderEccentricity<double>;
 template struct EncoderEccentricity<long double>;
@@ -40,7 +45,7 @@ template Vec3<float> quaternion_log<float>(const Quaternion<float>&);
 template Vec3<Jet> quaternion_log<Jet>(const Quaternion<Jet>&);
 
 static_assert(std::is_trivially_destructible_v<UnitCorrection<float>>);
-static_assert(sizeof(InertialUnit<float>) == 58 * sizeof(float));
+static_assert(sizeof(InertialUnit<float>) == 123 * sizeof(float));
 
 namespace {
 

@@ -9,28 +9,13 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <random>
+
+#include "matchers/draw.hpp"
 
 namespace trunnion {
 namespace {
 
 using Wide = long double;
-
-class Draw {
- public:
-  explicit Draw(unsigned seed) : engine_(seed) {}
-  double operator()(double size) { return size * uniform_(engine_); }
-  Vec3<double> vector(double size) { return Vec3<double>((*this)(size), (*this)(size), (*this)(size)); }
-  Mat3<double> matrix(double size) {
-    Mat3<double> M;
-    for (int i = 0; i < 9; ++i) M(i / 3, i % 3) = (*this)(size);
-    return M;
-  }
-
- private:
-  std::mt19937_64 engine_;
-  std::uniform_real_distribution<double> uniform_{-1.0, 1.0};
-};
 
 constexpr double kGyroRange = 35.0;    // rad/s
 constexpr double kAccelRange = 160.0;  // m/s^2
@@ -44,8 +29,8 @@ InertialUnit<double> any_unit(Draw& draw, bool bends) {
   unit.accel.M = draw.matrix(draw(1.0) > 0.5 ? 0.2 : 0.05);
   unit.g_sensitivity = draw.matrix(1e-4);
   unit.thermal.reference = 25.0 + draw(10.0);
-  unit.thermal.linear = {draw.vector(1e-3), draw.vector(1e-3)};
-  unit.thermal.quadratic = {draw.vector(1e-6), draw.vector(1e-5)};
+  unit.thermal.bias[0] = {draw.vector(1e-3), draw.vector(1e-3)};
+  unit.thermal.bias[1] = {draw.vector(1e-6), draw.vector(1e-5)};
   if (bends) {
     const double size = draw(1.0) > 0.5 ? 1.9e-3 : 1e-3;  // of full scale
     unit.gyro.cubic = draw.vector(size / (kGyroRange * kGyroRange));
@@ -58,13 +43,16 @@ InertialUnit<double> any_unit(Draw& draw, bool bends) {
 template <class T>
 InertialUnit<T> widened(const InertialUnit<double>& unit) {
   const auto triad = [](const Triad<double>& t) {
-    return Triad<T>{t.bias.cast<T>(), t.M.cast<T>(), t.quadratic.cast<T>(), t.cubic.cast<T>()};
+    return Triad<T>{t.bias.cast<T>(), t.M.cast<T>(), t.asymmetry.cast<T>(), t.quadratic.cast<T>(), t.cubic.cast<T>()};
   };
   const auto sample = [](const InertialSample<double>& s) { return InertialSample<T>{s.w.cast<T>(), s.f.cast<T>()}; };
-  return {triad(unit.gyro),
-          triad(unit.accel),
-          unit.g_sensitivity.cast<T>(),
-          {static_cast<T>(unit.thermal.reference), sample(unit.thermal.linear), sample(unit.thermal.quadratic)}};
+  InertialUnit<T> wide;
+  wide.gyro = triad(unit.gyro);
+  wide.accel = triad(unit.accel);
+  wide.g_sensitivity = unit.g_sensitivity.cast<T>();
+  wide.thermal.reference = static_cast<T>(unit.thermal.reference);
+  for (std::size_t k = 0; k < 2; ++k) wide.thermal.bias[k] = sample(unit.thermal.bias[k]);
+  return wide;
 }
 
 /// Eq. (2) and (4) of inertial_unit.hpp in long double, its nonlinearity iterated until it stands.
@@ -85,8 +73,8 @@ UnitOutput<Wide> exactly(const InertialUnit<double>& of, const UnitScale<double>
     for (int i = 0; i < 30; ++i) u = A * (unbiased - triad.nonlinearity(u));
     return u;
   };
-  const auto& linear = unit.thermal.linear;
-  const auto& quadratic = unit.thermal.quadratic;
+  const auto& linear = unit.thermal.bias[0];
+  const auto& quadratic = unit.thermal.bias[1];
   const Vec3<Wide> f =
       corrected(unit.accel, reading(3, scale.accel) - unit.accel.bias - t * (linear.f + t * quadratic.f));
   const Vec3<Wide> w = corrected(
@@ -254,6 +242,16 @@ TEST(CountCorrection, RefusesWhatDoesNotFit) {
   EXPECT_EQ(status(unit, scale, 16, 6), Status::kOutOfRange);
   unit = {};
   unit.thermal.reference = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(status(unit, scale, 16, 6), Status::kOutOfRange);
+  // what the integers do not carry is not left out in silence
+  unit = {};
+  unit.accel.asymmetry.y() = 1e-6;
+  EXPECT_EQ(status(unit, scale, 16, 6), Status::kOutOfRange);
+  unit = {};
+  unit.thermal.scale[0].w.x() = 1e-9;
+  EXPECT_EQ(status(unit, scale, 16, 6), Status::kOutOfRange);
+  unit = {};
+  unit.thermal.bias[2].f.z() = 1e-9;
   EXPECT_EQ(status(unit, scale, 16, 6), Status::kOutOfRange);
 }
 

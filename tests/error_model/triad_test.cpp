@@ -6,32 +6,12 @@
 #include <gtest/gtest.h>
 
 #include <limits>
-#include <random>
 
+#include "matchers/draw.hpp"
 #include "trunnion/error_model/inertial_unit.hpp"
 
 namespace trunnion {
 namespace {
-
-class Draw {
- public:
-  explicit Draw(unsigned seed) : engine_(seed) {}
-  double operator()(double size) { return size * uniform_(engine_); }
-  Vec3<double> vector(double size) {
-    Vec3<double> v;
-    for (int i = 0; i < 3; ++i) v(i) = (*this)(size);
-    return v;
-  }
-  Mat3<double> matrix(double size) {
-    Mat3<double> M;
-    for (int i = 0; i < 9; ++i) M(i / 3, i % 3) = (*this)(size);
-    return M;
-  }
-
- private:
-  std::mt19937_64 engine_;
-  std::uniform_real_distribution<double> uniform_{-1.0, 1.0};
-};
 
 TEST(Triad, ZeroParametersAreThePerfectInstrument) {
   const Vec3<double> u(0.3, -1.2, 4.0);
@@ -61,6 +41,7 @@ TEST(Triad, CorrectUndoesANonlinearDistortionToItsPromise) {
     triad.M = draw.matrix(0.01);
     triad.cubic = draw.vector(100e-6 / (kFullScale * kFullScale));
     triad.quadratic = draw.vector(100e-6 / kFullScale);
+    triad.asymmetry = draw.vector(100e-6);
     const Vec3<double> u = draw.vector(kFullScale);
     EXPECT_LT((triad.correct(triad.distort(u), triad.matrix().inverse()) - u).norm(), 1e-9 * kFullScale);
   }
@@ -109,7 +90,9 @@ TEST(UnitCorrection, UndoesCountsAndTemperature) {
     unit.accel.bias = draw.vector(0.5);
     unit.g_sensitivity = draw.matrix(1e-4);
     if (i % 2 == 1) unit.gyro.cubic = draw.vector(1e-7);
-    unit.thermal = {20.0, {draw.vector(1e-4), draw.vector(1e-3)}, {draw.vector(1e-6), draw.vector(1e-5)}};
+    unit.thermal.reference = 20.0;
+    unit.thermal.bias[0] = {draw.vector(1e-4), draw.vector(1e-3)};
+    unit.thermal.bias[1] = {draw.vector(1e-6), draw.vector(1e-5)};
     const UnitScale<double> counts{{938.7, 12.0}, {208.8, -7.0}};
     const double temperature = 20.0 + draw(50.0);
     const InertialSample<double> input{draw.vector(8.0), draw.vector(40.0)};

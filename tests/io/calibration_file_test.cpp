@@ -59,6 +59,35 @@ TEST(CalibrationFile, ReadsBackWhatItWritesToTheLastBit) {
   EXPECT_EQ(b.record.sigma.unit.gyro.M, Mat3<double>::Zero());
 }
 
+TEST(CalibrationFile, ReadsBackTheFurtherTerms) {
+  const TemporaryFolder folder;
+  CalibrationFile a = example();
+  InertialUnit<double>& unit = a.record.value.unit;
+  unit.gyro.asymmetry = Vec3<double>(1e-4, -2e-4, 3e-4);
+  unit.accel.asymmetry = Vec3<double>(0.0, 1e-5, 0.0);
+  unit.accel_place.col(1) = Vec3<double>(0.01, 0.02, -0.03);
+  unit.thermal.reference = 20.0;
+  unit.thermal.lowest = -19.5;
+  unit.thermal.highest = 1.0 / 3.0;
+  unit.thermal.bias[0].w.x() = 1e-5;
+  unit.thermal.scale[2].f = Vec3<double>(1e-9, 2e-9, 3e-9);
+  a.record.sigma.unit.accel_place.col(1) = Vec3<double>(1e-5, 2e-5, 3e-5);
+  a.record.sigma.unit.thermal.scale[2].f.z() = 1e-11;
+  const CalibrationFile b = read_calibration_file(folder.file("c.yaml", to_yaml(a)));
+  const InertialUnit<double>& back = b.record.value.unit;
+  EXPECT_EQ(back.gyro.asymmetry, unit.gyro.asymmetry);
+  EXPECT_EQ(back.accel.asymmetry, unit.accel.asymmetry);
+  EXPECT_EQ(back.accel_place, unit.accel_place);
+  EXPECT_EQ(back.thermal.reference, 20.0);
+  EXPECT_EQ(back.thermal.lowest, -19.5);
+  EXPECT_EQ(back.thermal.highest, 1.0 / 3.0);
+  EXPECT_EQ(back.thermal.order(), 3);
+  EXPECT_EQ(back.thermal.bias[0].w, unit.thermal.bias[0].w);
+  EXPECT_EQ(back.thermal.scale[2].f, unit.thermal.scale[2].f);
+  EXPECT_EQ(b.record.sigma.unit.accel_place, a.record.sigma.unit.accel_place);
+  EXPECT_EQ(b.record.sigma.unit.thermal.scale[2].f, a.record.sigma.unit.thermal.scale[2].f);
+}
+
 TEST(CalibrationFile, WritesNullForWhatWasNotEstimated) {
   const std::string text = to_yaml(example());
   EXPECT_THAT(text, testing::HasSubstr("matrix: [[null,null,null]"));

@@ -27,6 +27,8 @@ class Collect final : public SampleSink {
     azimuth.push_back(a);
     pitch.push_back(p);
   }
+  void temperature(double told) override { celsius.push_back(told); }
+  std::vector<double> celsius;
   std::vector<std::int64_t> imu_utime, encoder_utime;
   std::vector<InertialSample<double>> samples;
   std::vector<double> azimuth, pitch;
@@ -71,6 +73,43 @@ TEST(LcmRecording, ReadsBackWhatItWrote) {
 }
 
 // A record whose length was overwritten is lost, and one record only; the rest of the file is read.
+// A message states a temperature, or that it does not know: then it is told once, and what is none counts as unknown.
+TEST(LcmRecording, TellsTheTemperature) {
+  const TemporaryFolder folder;
+  const InertialSample<double> sample{Vec3<double>::Zero(), Vec3<double>(0, 0, 9.8)};
+  {
+    LcmLogWriter log(folder / "warm.lcm");
+    std::string message;
+    std::int64_t t = 0;
+    for (const double celsius : {std::nan(""), 21.5, 1e300, std::nan(""), -40.0}) {
+      t += 2500;
+      encode_imu(t, t / 2500, sample, message, celsius);
+      log.write(t, "IMU", message);
+    }
+    encode_imu_batch(6, {t + 2500, t + 5000}, {sample, sample}, message, 30.0);
+    log.write(t + 5000, "IMU", message);
+    ImuCounts raw{t + 7500, 8, {1, 2, 3, 4, 5, 6}, 256 * 33};
+    encode_imu_counts(raw, message);
+    log.write(t + 7500, "IMU", message);
+    raw = {t + 10000, 9, {1, 2, 3, 4, 5, 6}, ImuCounts::kNoTemperature};
+    encode_imu_counts(raw, message);
+    log.write(t + 10000, "IMU", message);
+    log.commit();
+  }
+  Collect sink;
+  LcmChannels channels;
+  channels.sheet.counts = {{1000.0, 0.0}, {100.0, 0.0}};
+  read_lcm_recording(folder / "warm.lcm", channels, false, sink);
+  ASSERT_EQ(sink.celsius.size(), 6U);
+  EXPECT_EQ(sink.celsius[0], 21.5);
+  EXPECT_TRUE(std::isnan(sink.celsius[1]));
+  EXPECT_EQ(sink.celsius[2], -40.0);
+  EXPECT_EQ(sink.celsius[3], 30.0);
+  EXPECT_EQ(sink.celsius[4], 33.0);
+  EXPECT_TRUE(std::isnan(sink.celsius[5]));
+  EXPECT_EQ(sink.samples.size(), 9U);
+}
+
 TEST(LcmLog, SurvivesACorruptLength) {
   const TemporaryFolder folder;
   const std::string path = change(folder, write_log(folder, 100), [](std::string& bytes) {

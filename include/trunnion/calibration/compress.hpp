@@ -12,6 +12,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -44,6 +45,9 @@ class Compressor final : public SampleSink {
   /// @throws Error (input) when the clock of the channel was reset
   void imu(std::int64_t utime, const InertialSample<double>& sample) override;
 
+  /// Of the samples that are fed next [degC].
+  void temperature(double celsius) override { celsius_ = celsius; }
+
   /// Feeds the readings of the two encoders [rad] at @p utime [us].
   /// @throws Error (input) when the clock of the channel was reset
   void encoder(std::int64_t utime, double azimuth, double pitch) override;
@@ -64,7 +68,7 @@ class Compressor final : public SampleSink {
 
  private:
   double seconds(std::int64_t utime);
-  void place(double t, const InertialSample<double>& sample);
+  void place(double t, const InertialSample<double>& sample, double celsius);
   void close_window();
   bool suspicious();
   void mark_outliers();
@@ -82,6 +86,7 @@ class Compressor final : public SampleSink {
 
   struct Early {
     double t;
+    double celsius;
     InertialSample<double> sample;
   };
   std::vector<Early> early_;  // until the period is known
@@ -91,9 +96,12 @@ class Compressor final : public SampleSink {
   std::array<std::vector<double>, 6> channel_;
   std::vector<unsigned char> bad_;
   std::vector<double> scratch_;
-  std::array<double, 6> usual_step_{};  // running mean of the second differences
-  std::array<double, 6> quantum_{};     // smallest step seen
-  std::array<double, 2> harmless_{};    // a deviation too small to matter, of each triad in the open window
+  std::array<double, 6> usual_step_{};                         // running mean of the second differences
+  std::array<double, 6> quantum_{};                            // smallest step seen
+  double celsius_ = std::numeric_limits<double>::quiet_NaN();  // of the samples that come
+  double celsius_sum_ = 0.0;                                   // in the open window
+  int celsius_count_ = 0;
+  std::array<double, 2> harmless_{};  // a deviation too small to matter, of each triad in the open window
 };
 
 }  // namespace trunnion::calibration

@@ -6,6 +6,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -19,7 +22,22 @@ namespace trunnion::calibration {
 struct ModelTerms {
   bool cubic = true;  ///< of the gyros
   bool g_sensitivity = true;
-  bool quadratic = false;  ///< of the accelerometers
+  bool quadratic = false;    ///< of the accelerometers
+  bool asymmetry = false;    ///< of all sensors
+  bool size_effect = false;  ///< the accelerometers' places
+  int temperature = 0;       ///< order of the polynomials of all biases and scales; 0: none
+};
+
+/// Of the data [degC]; NaN where there is none.
+struct TemperatureRange {
+  double lowest = std::numeric_limits<double>::quiet_NaN();
+  double highest = std::numeric_limits<double>::quiet_NaN();
+
+  [[nodiscard]] bool is_known() const { return lowest <= highest; }
+  /// T_0: the middle, in whole degrees.
+  [[nodiscard]] double reference() const { return std::round(0.5 * (lowest + highest)); }
+  /// From T_0 to the farther end [K].
+  [[nodiscard]] double reach() const { return std::max(highest - reference(), reference() - lowest); }
 };
 
 /// What is asked of the layout.
@@ -27,6 +45,7 @@ struct LayoutRequest {
   ModelTerms terms;
   EntryLimits refuse_above = default_refuse_above();
   double largest_rate = 1.0;  ///< rad/s, of the data
+  TemperatureRange temperature;
   int recordings = 1;
   bool bias_per_recording = true;
   bool accel_upper_triangular = false;  ///< by hand: the accelerometers define the frame
@@ -46,6 +65,11 @@ struct Layout {
   int g_sensitivity = -1;  ///< nine, by rows
   int accel_matrix[3][3];
   int accel_quadratic = -1;
+  int gyro_asymmetry = -1;
+  int accel_asymmetry = -1;
+  int accel_place = -1;  ///< six: of y, of z
+  int thermal = -1;      ///< for each order: biases of gyros and accelerometers, then their scales
+  int thermal_order = 0;
   int tilt = -1;  ///< two
   int heading = -1;
   int nonorthogonality = -1;

@@ -21,6 +21,7 @@
 
 #include "trunnion/calibration/observability.hpp"
 #include "trunnion/calibration/twelve_position_solve.hpp"
+#include "trunnion/positions/soak.hpp"
 #include "trunnion/turntable/rig.hpp"
 
 namespace trunnion::calibration {
@@ -37,6 +38,7 @@ struct PredictionOptions {
   double encoder_rate = 200.0;   ///< Hz
   double encoder_quantum = 0.0;  ///< rad; 0: exact
   double largest_rate = 1.0;     ///< rad/s, at which a nonlinearity is stated
+  Soak soak;                     ///< of every recording, where the model has terms of temperature
 };
 
 /// Two entries that are hard to tell apart.
@@ -50,6 +52,7 @@ struct Entanglement {
 class Predictor {
  public:
   /// @param mounts index into Rig::mount of each recording. The rig must outlive it.
+  /// @throws Error (input) for a model with terms of temperature where there is no soak
   Predictor(const Rig& rig, const Site& site, const std::vector<int>& mounts, const PredictionOptions& options);
   Predictor(const Predictor&) = delete;
   Predictor& operator=(const Predictor&) = delete;

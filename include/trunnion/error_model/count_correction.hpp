@@ -202,7 +202,8 @@ using LinearCountCorrection = BasicCountCorrection<false>;
 /// @param bits B in 2..30; @param fraction in 0..28, bits + fraction <= 30
 /// @return kOutOfRange for an argument outside that or not finite, a matrix without an inverse or with a row whose
 /// sizes sum to 1.99 or more, a g-sensitivity of an eighth of a gyro count by a count of force, a bias with its zero
-/// beyond the range of the counts, or a nonlinearity above 1/512 of full scale
+/// beyond the range of the counts, a nonlinearity above 1/512 of full scale, an asymmetry, or terms of temperature
+/// other than the biases' first and second order
 inline Result<CountCalibration> count_calibration(const InertialUnit<double>& unit, const UnitScale<double>& scale,
                                                   int bits, int fraction) {
   if (bits < 2 || fraction < 0 || bits + fraction > 30) return Status::kOutOfRange;
@@ -219,7 +220,8 @@ inline Result<CountCalibration> count_calibration(const InertialUnit<double>& un
   const auto q = [](double value, int point) {
     return static_cast<std::int32_t>(std::lround(std::ldexp(value, point)));
   };
-  bool fits = std::abs(unit.thermal.reference) <= 1000.0;
+  bool fits = std::abs(unit.thermal.reference) <= 1000.0 && unit.thermal.is_quadratic_bias() &&
+              unit.gyro.asymmetry.isZero(0.0) && unit.accel.asymmetry.isZero(0.0);
   if (!fits) return Status::kOutOfRange;
   k.reference = q(unit.thermal.reference, 8);
   k.is_linear = unit.gyro.is_linear() && unit.accel.is_linear() ? 1 : 0;
@@ -306,7 +308,7 @@ inline Result<CountCalibration> count_calibration(const InertialUnit<double>& un
   };
   double reach = 0.0;
   const std::array<double, 3> accel =
-      fold(unit.accel, scale.accel, unit.thermal.linear.f, unit.thermal.quadratic.f, {}, {}, k.accel, reach);
+      fold(unit.accel, scale.accel, unit.thermal.bias[0].f, unit.thermal.bias[1].f, {}, {}, k.accel, reach);
   if (!fits) return Status::kOutOfRange;
   std::array<double, 3> force{};
   std::array<double, 3> force_error{};
@@ -317,7 +319,7 @@ inline Result<CountCalibration> count_calibration(const InertialUnit<double>& un
                         reach * std::ldexp(1.0, bits + k.shift - 36);
   }
   const std::array<double, 3> gyro =
-      fold(unit.gyro, scale.gyro, unit.thermal.linear.w, unit.thermal.quadratic.w, force, force_error, k.gyro, reach);
+      fold(unit.gyro, scale.gyro, unit.thermal.bias[0].w, unit.thermal.bias[1].w, force, force_error, k.gyro, reach);
   if (!fits) return Status::kOutOfRange;
   for (std::size_t i = 0; i < 3; ++i) {
     made.error_bound[i] = gyro[i];

@@ -34,7 +34,7 @@ constexpr std::uint32_t crc32(const unsigned char* bytes, std::size_t size, std:
 struct FlashBlock {
   static constexpr std::uint32_t kMagic = 0x4e555254U;           // "TRUN" as bytes
   static constexpr std::uint32_t kMagicElsewhere = 0x5452554eU;  // the same, of the other byte order
-  static constexpr std::uint32_t kVersion = 1;
+  static constexpr std::uint32_t kVersion = 2;
 
   std::uint32_t magic = kMagic;
   std::uint32_t version = kVersion;
@@ -56,7 +56,7 @@ struct FlashBlock {
     crc = check();
   }
 };
-static_assert(sizeof(FlashBlock) == 712 && alignof(FlashBlock) <= 8, "the block is a format: no padding may move it");
+static_assert(sizeof(FlashBlock) == 736 && alignof(FlashBlock) <= 8, "the block is a format: no padding may move it");
 
 /// The block at @p address, in place.
 /// @param bytes that may be read there

@@ -3,17 +3,21 @@
 /// @file
 /// Deterministic errors of an inertial unit: a gyro triad that feels specific force, and an accelerometer triad.
 ///
-///   y_g = (I + M_g) w + b_g(T) + N w^o3 + Q_g w^o2 + G f             ... (1)
-///   y_a = (I + M_a) f + b_a(T) + Q f^o2 + N_a f^o3                   ... (2)
-///   b(T) = b + b_1 (T - T_0) + b_2 (T - T_0)^2                       ... (3)
-///   correction: f from (2) first, then w from y_g - G f              ... (4)
+///   y_g = (I + M_g(T)) w + b_g(T) + n_g(w) + G f                           ... (1)
+///   y_a = (I + M_a(T)) f + b_a(T) + n_a(f) + e                             ... (2)
+///   b(T) = b + sum b_k t^k,  M(T) = M + diag(sum s_k t^k),  t = T - T_0    ... (3)
+///   correction: f from (2) first, then w from y_g - G f                    ... (4)
+///   e_i = K_i (w' x d_i + w x (w x d_i)),  K_i: row i of I + M_a           ... (6)
 ///
-/// w = w_ib_b [rad/s], f = f_b [m/s^2], G: g-sensitivity of the gyros [(rad/s)/(m/s^2)], T: temperature [degC].
-/// IEEE Std 1554-2005; docs/theory/calibration.md, eq. 1-5.
+/// w = w_ib_b [rad/s], f = f_b [m/s^2], n: nonlinearity (triad.hpp), G: g-sensitivity of the gyros
+/// [(rad/s)/(m/s^2)], T: temperature [degC], e: size effect of accelerometers that sit at d_i [m] about the sensing
+/// point, w': angular acceleration. IEEE Std 1554-2005; docs/theory/calibration.md, eq. 1-5, 35-37.
 
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <limits>
 
 #include "trunnion/core/status.hpp"
 #include "trunnion/core/triple.hpp"
@@ -32,16 +36,43 @@ struct InertialSample {
 template <class C>
 using UnitOutput = std::array<C, 6>;
 
-/// b_1 and b_2 of eq. (3): zero where a unit is not calibrated over temperature.
+/// b_k and s_k of eq. (3): zero where a unit is not calibrated over temperature.
 template <class T>
-struct ThermalBias {
-  T reference = T(0);           ///< T_0 [degC]
-  InertialSample<T> linear;     ///< [unit of the sensor / K]
-  InertialSample<T> quadratic;  ///< [unit of the sensor / K^2]
+struct ThermalErrors {
+  static constexpr int kMostOrder = 5;
+  using Orders = std::array<InertialSample<T>, kMostOrder>;
 
-  [[nodiscard]] bool is_zero() const {
-    return linear.w.isZero(T(0)) && linear.f.isZero(T(0)) && quadratic.w.isZero(T(0)) && quadratic.f.isZero(T(0));
+  T reference = T(0);  ///< T_0 [degC]
+  /// Of the calibration [degC]; beyond it the nearer end is taken: a polynomial runs away there.
+  T lowest = -std::numeric_limits<T>::infinity();
+  T highest = std::numeric_limits<T>::infinity();
+  Orders bias;   ///< b_1, b_2, ... [unit of the sensor / K^k]
+  Orders scale;  ///< s_1, s_2, ... [1 / K^k]
+
+  /// The highest power with a coefficient that is not zero.
+  [[nodiscard]] int order() const {
+    for (std::size_t k = kMostOrder; k > 0; --k) {
+      if (!is_zero(bias[k - 1]) || !is_zero(scale[k - 1])) return static_cast<int>(k);
+    }
+    return 0;
   }
+  /// Whether there is no more than b_1 and b_2: what UnitCorrection and the integers carry.
+  [[nodiscard]] bool is_quadratic_bias() const {
+    for (std::size_t k = 0; k < kMostOrder; ++k) {
+      if (!is_zero(scale[k]) || (k >= 2 && !is_zero(bias[k]))) return false;
+    }
+    return true;
+  }
+  /// sum c_k t^k of @p orders at @p temperature [degC].
+  [[nodiscard]] InertialSample<T> at(const T& temperature, const Orders& orders) const {
+    const T t = std::min(std::max(temperature, lowest), highest) - reference;
+    InertialSample<T> sum;
+    for (std::size_t k = kMostOrder; k > 0; --k) sum = {t * (orders[k - 1].w + sum.w), t * (orders[k - 1].f + sum.f)};
+    return sum;
+  }
+
+ private:
+  static bool is_zero(const InertialSample<T>& c) { return c.w.isZero(T(0)) && c.f.isZero(T(0)); }
 };
 
 template <class T>
@@ -49,18 +80,39 @@ struct InertialUnit {
   Triad<T> gyro;
   Triad<T> accel;
   Mat3<T> g_sensitivity = Mat3<T>::Zero();
-  ThermalBias<T> thermal;
+  ThermalErrors<T> thermal;
+  Mat3<T> accel_place = Mat3<T>::Zero();  ///< d_x d_y d_z, a column each [m]; d_x is zero: x is the sensing point
 
-  /// What the unit reads for the true input at T_0, eq. (1) and (2).
+  /// The unit as it is at @p temperature [degC], without terms of temperature, eq. (3).
+  [[nodiscard]] InertialUnit at(const T& temperature) const {
+    InertialUnit unit = *this;
+    unit.thermal = {};
+    const InertialSample<T> bias_change = thermal.at(temperature, thermal.bias);
+    const InertialSample<T> scale_change = thermal.at(temperature, thermal.scale);
+    unit.gyro.bias += bias_change.w;
+    unit.accel.bias += bias_change.f;
+    unit.gyro.M.diagonal() += scale_change.w;
+    unit.accel.M.diagonal() += scale_change.f;
+    return unit;
+  }
+
+  /// e of eq. (6) for the angular rate @p w [rad/s] and acceleration @p w_dot [rad/s^2]: what distort() leaves out.
+  [[nodiscard]] Vec3<T> size_effect(const Vec3<T>& w, const Vec3<T>& w_dot) const {
+    Vec3<T> e;
+    for (int i = 0; i < 3; ++i) {
+      const Vec3<T> d = accel_place.col(i);
+      e(i) = accel.matrix().row(i).dot(w_dot.cross(d) + w.cross(w.cross(d)));
+    }
+    return e;
+  }
+
+  /// What the unit reads for the true input at T_0, eq. (1) and (2), without the size effect.
   [[nodiscard]] InertialSample<T> distort(const InertialSample<T>& input) const {
     return {gyro.distort(input.w) + g_sensitivity * input.f, accel.distort(input.f)};
   }
   /// The same at @p temperature [degC].
   [[nodiscard]] InertialSample<T> distort(const InertialSample<T>& input, const T& temperature) const {
-    const T t = temperature - thermal.reference;
-    const InertialSample<T> reading = distort(input);
-    return {reading.w + t * (thermal.linear.w + t * thermal.quadratic.w),
-            reading.f + t * (thermal.linear.f + t * thermal.quadratic.f)};
+    return at(temperature).distort(input);
   }
 };
 
@@ -83,7 +135,8 @@ struct UnitScale {
 ///
 ///   f = A_a y_a + c_a(T) - A_a' n_a(f),   w = A_g y_g + c_g(T) - H f - A_g' n_g(w)       ... (5)
 ///
-/// A' = (I + M)^-1, A = A' / scale, c = -A' b - A zero, H = A_g' G, n: the nonlinearity, by Triad's two steps.
+/// A' = (I + M)^-1, A = A' / scale, c = -A' b - A zero, H = A_g' G, n: the nonlinearity, by Triad's two steps. Of the
+/// terms of temperature it takes b_1 and b_2; ThermalCorrection takes all. The size effect is not its affair.
 template <class T>
 class UnitCorrection {
  public:
@@ -94,7 +147,7 @@ class UnitCorrection {
   /// Of one triad's nonlinearity.
   struct Bend {
     kernel::Matrix<T> A;
-    kernel::Triple<T> quadratic, cubic;
+    kernel::Triple<T> asymmetry, quadratic, cubic;
   };
   /// Plain numbers, as a flash block or a generated header holds them.
   struct Coefficients {
@@ -112,8 +165,8 @@ class UnitCorrection {
   explicit UnitCorrection(const InertialUnit<U>& unit, const UnitScale<U>& counts = UnitScale<U>()) {
     const Mat3<U> accel = unit.accel.matrix().inverse();
     const Mat3<U> gyro = unit.gyro.matrix().inverse();
-    k_.accel = axes<U>(accel, unit.accel.bias, unit.thermal.linear.f, unit.thermal.quadratic.f, counts.accel);
-    k_.gyro = axes<U>(gyro, unit.gyro.bias, unit.thermal.linear.w, unit.thermal.quadratic.w, counts.gyro);
+    k_.accel = axes<U>(accel, unit.accel.bias, unit.thermal.bias[0].f, unit.thermal.bias[1].f, counts.accel);
+    k_.gyro = axes<U>(gyro, unit.gyro.bias, unit.thermal.bias[0].w, unit.thermal.bias[1].w, counts.gyro);
     k_.H = kernel::matrix<T>((gyro * unit.g_sensitivity).template cast<T>());
     k_.accel_bend = bend<U>(accel, unit.accel);
     k_.gyro_bend = bend<U>(gyro, unit.gyro);
@@ -159,8 +212,8 @@ class UnitCorrection {
   }
   template <class U>
   static Bend bend(const Mat3<U>& A, const Triad<U>& triad) {
-    return {kernel::matrix<T>(A.template cast<T>()), kernel::triple<T>(triad.quadratic.template cast<T>()),
-            kernel::triple<T>(triad.cubic.template cast<T>())};
+    return {kernel::matrix<T>(A.template cast<T>()), kernel::triple<T>(triad.asymmetry.template cast<T>()),
+            kernel::triple<T>(triad.quadratic.template cast<T>()), kernel::triple<T>(triad.cubic.template cast<T>())};
   }
 
   TRUNNION_INLINE InertialSample<T> corrected(const InertialSample<T>& reading, const Triple& c_a,
@@ -174,9 +227,12 @@ class UnitCorrection {
   static Triple straightened(const Triple& linear, const Bend& bend) {
     Triple u = linear;
     for (int step = 0; step < Triad<T>::kCorrectionSteps; ++step) {
-      const Triple n = {u.x * u.x * (bend.quadratic.x + bend.cubic.x * u.x),
-                        u.y * u.y * (bend.quadratic.y + bend.cubic.y * u.y),
-                        u.z * u.z * (bend.quadratic.z + bend.cubic.z * u.z)};
+      const auto n_of = [](const T& x, const T& asymmetry, const T& quadratic, const T& cubic) {
+        return (x < T(0) ? -x : x) * asymmetry + x * x * (quadratic + cubic * x);
+      };
+      const Triple n = {n_of(u.x, bend.asymmetry.x, bend.quadratic.x, bend.cubic.x),
+                        n_of(u.y, bend.asymmetry.y, bend.quadratic.y, bend.cubic.y),
+                        n_of(u.z, bend.asymmetry.z, bend.quadratic.z, bend.cubic.z)};
       u = linear - bend.A * n;
     }
     return u;

@@ -3,13 +3,14 @@
 /// @file
 /// Deterministic errors of three orthogonal sensors of one kind.
 ///
-///   measured = (I + M) u + b + Q u^o2 + N u^o3                                    ... (1)
-///   u        = (I + M)^-1 (measured - b - Q u^o2 - N u^o3)                        ... (2)  solved by iteration
+///   measured = (I + M) u + b + n(u),   n(u) = A |u| + Q u^o2 + N u^o3              ... (1)
+///   u        = (I + M)^-1 (measured - b - n(u))                                    ... (2)  solved by iteration
 ///   I + M    = (I + S) T R                                                         ... (3)
 ///
 /// u: the true angular rate w_ib_b [rad/s] or specific force f_b [m/s^2]. b: bias [unit of u]. M: scale errors on the
-/// diagonal [-], cross-coupling off it [rad]. Q [1/u], N [1/u^2]: second- and third-order scale-factor nonlinearity,
-/// one coefficient an axis; ^o2 and ^o3 are element by element. S: scale; T: non-orthogonality, lower triangular with
+/// diagonal [-], cross-coupling off it [rad]. A: asymmetry, half the scale of positive inputs less that of negative
+/// ones [-]; Q [1/u], N [1/u^2]: second- and third-order scale-factor nonlinearity; one coefficient an axis, |.|, ^o2
+/// and ^o3 are element by element. S: scale; T: non-orthogonality, lower triangular with
 /// rows of unit length; R: rotation from the case to the first sensitive axis and the plane of the first two.
 /// Zero parameters are the perfect instrument. IEEE Std 1554-2005, 1293-2018; docs/theory/calibration.md, eq. 1-3.
 
@@ -39,18 +40,23 @@ struct Triad {
 
   Vec3<T> bias = Vec3<T>::Zero();
   Mat3<T> M = Mat3<T>::Zero();
+  Vec3<T> asymmetry = Vec3<T>::Zero();
   Vec3<T> quadratic = Vec3<T>::Zero();
   Vec3<T> cubic = Vec3<T>::Zero();
 
   /// I + M, what the file format calls the matrix.
   [[nodiscard]] Mat3<T> matrix() const { return Mat3<T>::Identity() + M; }
 
-  /// Q u^o2 + N u^o3.
+  /// n(u) of eq. (1).
   [[nodiscard]] Vec3<T> nonlinearity(const Vec3<T>& u) const {
-    return (u.array() * u.array() * (quadratic.array() + cubic.array() * u.array())).matrix();
+    return (u.array().abs() * asymmetry.array() +
+            u.array() * u.array() * (quadratic.array() + cubic.array() * u.array()))
+        .matrix();
   }
 
-  [[nodiscard]] bool is_linear() const { return quadratic.isZero(T(0)) && cubic.isZero(T(0)); }
+  [[nodiscard]] bool is_linear() const {
+    return asymmetry.isZero(T(0)) && quadratic.isZero(T(0)) && cubic.isZero(T(0));
+  }
 
   /// What the sensors read for the true input @p u, eq. (1).
   [[nodiscard]] Vec3<T> distort(const Vec3<T>& u) const { return u + M * u + bias + nonlinearity(u); }

@@ -78,6 +78,7 @@ class LcmDecoder {
   void deliver(const LcmEvent& event, std::int64_t utime, const InertialSample<double>& sample);
   void doubt(const LcmEvent& event, const InertialSample<double>& sample);
   void batch(const LcmEvent& event);
+  void tell_temperature(double celsius);
   void mapped_imu(const LcmEvent& event);
   void deliver_angles(const LcmEvent& event, std::int64_t utime, const std::array<double, 2>& angle);
   [[nodiscard]] Error fault(const LcmEvent& event, const std::string& field, const std::string& what) const;
@@ -91,6 +92,7 @@ class LcmDecoder {
   std::vector<MappedMessages::Sample> mapped_;
   SequenceWatch imu_sequence_;
   SequenceWatch encoder_sequence_;
+  bool told_temperature_ = false;
   long long samples_ = 0;
   long long encoders_ = 0;
   LcmLosses damaged_;
@@ -115,18 +117,23 @@ void encode_imu(std::int64_t utime, std::int64_t sequence, const InertialSample<
                 double temperature = std::numeric_limits<double>::quiet_NaN());
 /// Encodes one message of type imu_batch_t: as many samples as stamps, the first of them number @p sequence.
 void encode_imu_batch(std::int64_t sequence, const std::vector<std::int64_t>& utime,
-                      const std::vector<InertialSample<double>>& samples, std::string& out);
+                      const std::vector<InertialSample<double>>& samples, std::string& out,
+                      double temperature = std::numeric_limits<double>::quiet_NaN());
 /// The content of a message of type imu_counts_t.
 struct ImuCounts {
   std::int64_t utime = 0;
   std::int64_t sequence = 0;
   UnitOutput<std::int32_t> counts{};
-  std::int32_t temperature = 0;  ///< 1/256 degC; the lowest number: not measured
+  std::int32_t temperature = 0;  ///< 1/256 degC, or kNoTemperature
+
+  static constexpr std::int32_t kNoTemperature = std::numeric_limits<std::int32_t>::min();
+  /// degC; not a number where it is not measured
+  [[nodiscard]] double celsius() const {
+    return temperature == kNoTemperature ? std::numeric_limits<double>::quiet_NaN() : temperature / 256.0;
+  }
 };
 /// @return nothing for a message of another type
 std::optional<ImuCounts> decode_imu_counts(std::string_view message);
-/// The temperature of a message of type imu_t or imu_batch_t [degC]; not a number where it is not known, and of others.
-double temperature_of(std::string_view message);
 /// Encodes one message of type imu_counts_t: gyro x, y, z, accelerometer x, y, z, and 1/256 degC.
 void encode_imu_counts(const ImuCounts& sample, std::string& out);
 void encode_encoder(std::int64_t utime, std::int64_t sequence, double azimuth, double pitch, std::string& out);

@@ -12,6 +12,7 @@
 #include "trunnion/io/csv.hpp"
 #include "trunnion/io/lcm_recording.hpp"
 #include "trunnion/positions/entry.hpp"
+#include "trunnion/positions/soak.hpp"
 #include "trunnion/positions/table_plan.hpp"
 #include "trunnion/turntable/rig.hpp"
 
@@ -53,6 +54,9 @@ struct RunFile {
   bool cubic = true;
   bool g_sensitivity = true;
   bool quadratic = false;
+  bool asymmetry = false;
+  bool size_effect = false;
+  int temperature = 0;  ///< order
   EntryLimits refuse_above = default_refuse_above();
   std::array<EntryVerdict, kEntries> limits;
   LcmChannels channels;
@@ -60,6 +64,7 @@ struct RunFile {
   ColumnMap columns;
   PlanRequest plan;   ///< what a live calibration asks of each mount
   std::string moves;  ///< of the table, or empty
+  Soak soak;          ///< of the chamber, for a simulation and a plan
   std::vector<RecordingFiles> recordings;
 };
 

@@ -43,6 +43,7 @@ struct Plan {
   std::vector<TableSequence> recordings;
   std::vector<calibration::Parameter> parameters;
   calibration::Observability predicted;
+  Eigen::MatrixXd information;  ///< of the motions alone, SI
 
   [[nodiscard]] double duration() const;
   /// Largest sigma over what is wanted of it; zero where nothing is.

@@ -19,16 +19,23 @@ enum class Entry : int {
   kGyroCrossCoupling,
   kGyroCubic,
   kGyroGSensitivity,
+  kGyroAsymmetry,
+  kGyroThermalBias,
+  kGyroThermalScale,
   kAccelBias,
   kAccelScale,
   kAccelCrossCoupling,
   kAccelQuadratic,
+  kAccelAsymmetry,
+  kAccelPlace,
+  kAccelThermalBias,
+  kAccelThermalScale,
   kRigAngle,
   kLeverArm,
   kClockOffset,
 };
 
-inline constexpr int kEntries = 12;
+inline constexpr int kEntries = 19;
 
 struct EntryKind {
   const char* key;
@@ -44,10 +51,17 @@ inline constexpr std::array<EntryKind, kEntries> kEntryKinds = {{
     {"gyro_cross_coupling_deg", "deg", kRadPerDeg, 0.1, 10.0},
     {"gyro_cubic_ppm", "ppm at the largest rate", 1e-6, 500.0, 2e5},
     {"gyro_g_sensitivity_deg_per_h_per_g", "deg/h/g", kRadPerSPerDegPerH / kStandardGravity, 36.0, 2e4},
+    {"gyro_asymmetry_ppm", "ppm", 1e-6, 500.0, 2e5},
+    {"gyro_thermal_bias_deg_per_h", "deg/h at the end of the range", kRadPerSPerDegPerH, 180.0, 2e5},
+    {"gyro_thermal_scale_ppm", "ppm at the end of the range", 1e-6, 500.0, 2e5},
     {"accel_bias_ug", "ug", kMetresPerS2PerMicroG, 2500.0, 5e5},
     {"accel_scale_ppm", "ppm", 1e-6, 500.0, 2e5},
     {"accel_cross_coupling_deg", "deg", kRadPerDeg, 0.1, 10.0},
     {"accel_quadratic_ppm", "ppm at 1 g", 1e-6 / kStandardGravity, 500.0, 2e5},
+    {"accel_asymmetry_ppm", "ppm", 1e-6, 500.0, 2e5},
+    {"accel_place_m", "m", 1.0, 0.02, 1.0},
+    {"accel_thermal_bias_ug", "ug at the end of the range", kMetresPerS2PerMicroG, 2500.0, 5e5},
+    {"accel_thermal_scale_ppm", "ppm at the end of the range", 1e-6, 500.0, 2e5},
     {"rig_angle_deg", "deg", kRadPerDeg, 0.1, 10.0},
     {"lever_arm_m", "m", 1.0, 0.1, 3.0},
     {"clock_offset_ms", "ms", 1e-3, 5.0, 1e3},

@@ -17,6 +17,7 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 
 #include "trunnion/core/linear.hpp"
 #include "trunnion/error_model/inertial_unit.hpp"
@@ -33,6 +34,7 @@ struct ObservationWindow {
   std::array<double, kWindowNodes> weight{};
   InertialSample<double> mean;  ///< of the readings
   int samples = 0;
+  double temperature = std::numeric_limits<double>::quiet_NaN();  ///< mean over the samples [degC]; NaN: not measured
 };
 
 /// Weights of eq. (1) from the moments m_j = mean of x^j over the covering, j = 0..4, x = (s - t) / half_width.

@@ -17,6 +17,7 @@
 
 #include "trunnion/error_model/noise.hpp"
 #include "trunnion/positions/calibration_record.hpp"
+#include "trunnion/positions/soak.hpp"
 #include "trunnion/simulation/table_sequence.hpp"
 #include "trunnion/turntable/rig.hpp"
 
@@ -39,10 +40,19 @@ struct TableRunSettings {
   double accel_bias, accel_turn_on_bias;   ///< m/s^2
   double accel_scale, accel_cross_coupling;
   double accel_quadratic = 0.0;  ///< s^2/m
+  double gyro_asymmetry = 0.0, accel_asymmetry = 0.0;
+  double accel_place = 0.0;  ///< m, a component
 
   double tilt, nonorthogonality, mount_error, eccentricity;  ///< rad
   double lever_arm;                                          ///< m, length; direction at random in each mount
   double largest_clock_offset;                               ///< s, uniform on both sides
+
+  /// Of the temperature, in each recording; where it is known, every bias and scale is a polynomial of the order below
+  /// about its middle, whose every term has these sizes at the range's ends.
+  Soak soak;
+  int thermal_order = 3;
+  double gyro_thermal_bias, gyro_thermal_scale;    ///< rad/s, -
+  double accel_thermal_bias, accel_thermal_scale;  ///< m/s^2, -
 
   bool exact_gravity = false;     ///< gravity is what the site says, else drawn about it
   double outlier_fraction = 0.0;  ///< of the samples
@@ -63,6 +73,7 @@ CalibrationValues draw_truth(const TableRunSettings& settings, const Rig& rig, c
 struct TableSinks {
   std::function<void(std::int64_t utime, std::int64_t sequence, const InertialSample<double>& sample)> imu;
   std::function<void(std::int64_t utime, std::int64_t sequence, double azimuth, double pitch)> encoder;
+  std::function<void(double celsius)> temperature = {};  ///< before each sample of a soak; may be empty
 };
 
 /// Runs recording @p index with the unit in @p mount and feeds the sinks in order of time.

@@ -55,6 +55,11 @@ TableSequence experiment(double lowest, double highest, int variant);
 /// the pitch as swings of those peak rates where its joint has limits, 30 s at rest.
 TableSequence design_run(const AxisLimits& pitch);
 
+/// For a unit whose temperature is driven through its range: rests over the pitch range and turns at 20 and 40 deg/s
+/// while the pitch swings, repeated until @p duration [s] is over, so that every temperature sees all of them.
+/// @param variant changes the order of the swings
+TableSequence soak(const AxisLimits& pitch, double duration, int variant);
+
 /// Rests only, at the middle of the pitch range: a run with too few turns.
 TableSequence rest_only(double lowest, double highest);
 
