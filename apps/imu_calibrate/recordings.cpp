@@ -4,47 +4,16 @@
 #include "recordings.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cctype>
-#include <exception>
 #include <filesystem>
 #include <mutex>
-#include <system_error>
-#include <thread>
 
 #include "../terminal.hpp"
+#include "trunnion/calibration/share_out.hpp"
 #include "trunnion/core/error.hpp"
 
 namespace trunnion::app {
 namespace {
-
-/// Calls job(i) for i in [0, n), on as many threads as the machine has. Throws the first exception by index.
-template <class Job>
-void for_each_recording(std::size_t n, const Job& job) {
-  std::vector<std::exception_ptr> failed(n);
-  std::atomic<std::size_t> next{0};
-  const auto work = [&] {
-    for (std::size_t i = next++; i < n; i = next++) {
-      try {
-        job(i);
-      } catch (...) {
-        failed[i] = std::current_exception();
-      }
-    }
-  };
-  std::vector<std::thread> threads;
-  try {
-    for (std::size_t t = 1; t < std::min<std::size_t>(n, std::max(1U, std::thread::hardware_concurrency())); ++t)
-      threads.emplace_back(work);
-  } catch (const std::system_error&) {
-    // no more threads to be had: those there are do the work
-  }
-  work();
-  for (std::thread& thread : threads) thread.join();
-  for (const std::exception_ptr& one : failed) {
-    if (one) std::rethrow_exception(one);
-  }
-}
 
 /// Progress of several files as one line.
 class ReadProgress {
@@ -145,7 +114,7 @@ std::vector<calibration::TableRecording> read_table_recordings(const io::RunFile
   std::vector<calibration::TableRecording> recordings(run.recordings.size());
   std::vector<RunInputs> each(run.recordings.size());
   ReadProgress progress(run.recordings.size());
-  for_each_recording(run.recordings.size(), [&](std::size_t i) {
+  calibration::share_out(run.recordings.size(), [&](std::size_t i) {
     const io::RecordingFiles& files = run.recordings[i];
     calibration::Compressor compressor(compress_options(run, files));
     each[i].losses = io::read_recording(run, files, compressor, each[i].digests, progress.of(i));
@@ -160,7 +129,7 @@ std::vector<calibration::HandRecording> read_hand_recordings(const io::RunFile& 
   std::vector<calibration::HandRecording> recordings(run.recordings.size());
   std::vector<RunInputs> each(run.recordings.size());
   ReadProgress progress(run.recordings.size());
-  for_each_recording(run.recordings.size(), [&](std::size_t i) {
+  calibration::share_out(run.recordings.size(), [&](std::size_t i) {
     calibration::RestsAndTurns parts(run.recordings[i].name());
     each[i].losses = io::read_recording(run, run.recordings[i], parts, each[i].digests, progress.of(i));
     recordings[i] = parts.finish({run.sheet.gyro_range, run.sheet.accel_range});

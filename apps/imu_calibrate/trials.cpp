@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -11,7 +10,6 @@
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <thread>
 
 #include "../outputs.hpp"
 #include "../program.hpp"
@@ -20,6 +18,7 @@
 #include "recordings.hpp"
 #include "result.hpp"
 #include "trials_file.hpp"
+#include "trunnion/calibration/share_out.hpp"
 #include "trunnion/comparison/statistics.hpp"
 #include "trunnion/comparison/trial.hpp"
 #include "trunnion/core/chi_square.hpp"
@@ -220,14 +219,13 @@ Json run_trials(const Options& o) {
     if (done.count(seed) == 0) left.push_back(seed);
   }
   std::mutex mutex;
-  std::atomic<std::size_t> next{0};
-  std::exception_ptr failed;
   ProgressLine progress;
   std::size_t finished = 0;
   catch_interrupts();
-  const auto work = [&] {
-    for (std::size_t i = next++; i < left.size() && !interrupted(); i = next++) {
-      try {
+  calibration::share_out(
+      left.size(),
+      [&](std::size_t i) {
+        if (interrupted()) return;
         const Json tree = tree_of(comparison::run_trial(setup.settings, methods, left[i]));
         const std::lock_guard<std::mutex> lock(mutex);
         all["trials"].push_back(tree);
@@ -237,19 +235,8 @@ Json run_trials(const Options& o) {
           io::write_whole(o.output, json_text(all));
         }
         progress.show("trial " + std::to_string(finished) + " of " + std::to_string(left.size()));
-      } catch (...) {
-        const std::lock_guard<std::mutex> lock(mutex);
-        if (!failed) failed = std::current_exception();
-        next = left.size();
-      }
-    }
-  };
-  const unsigned jobs = o.jobs > 0 ? static_cast<unsigned>(o.jobs) : std::max(1U, std::thread::hardware_concurrency());
-  std::vector<std::thread> threads;
-  for (unsigned t = 1; t < std::min<std::size_t>(jobs, left.size()); ++t) threads.emplace_back(work);
-  work();
-  for (std::thread& thread : threads) thread.join();
-  if (failed) std::rethrow_exception(failed);
+      },
+      static_cast<unsigned>(std::max(0, o.jobs)));
   sort_trials(all);
   return all;
 }

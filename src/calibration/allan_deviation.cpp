@@ -7,12 +7,10 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <limits>
-#include <system_error>
-#include <thread>
 
+#include "trunnion/calibration/share_out.hpp"
 #include "trunnion/core/chi_square.hpp"
 #include "trunnion/core/units.hpp"
 
@@ -29,17 +27,70 @@ double squares(const double* a, const double* b, const double* c, std::size_t co
   std::size_t k = 0;
   for (; k + kLanes <= count; k += kLanes) {
     for (std::size_t i = 0; i < kLanes; ++i) {
-      const double d = (a[k + i] - b[k + i]) - (b[k + i] - c[k + i]);
+      const double d = (a[k + i] + c[k + i]) - 2.0 * b[k + i];
       sum[i] += d * d;
     }
   }
   double rest = 0.0;
   for (; k < count; ++k) {
-    const double d = (a[k] - b[k]) - (b[k] - c[k]);
+    const double d = (a[k] + c[k]) - 2.0 * b[k];
     rest += d * d;
   }
   for (const double one : sum) rest += one;
   return rest;
+}
+
+constexpr std::size_t kTogether = 4;  // taus
+
+/// Adds squares() of kTogether taus, each twice the one before, over a block: a reading that two of them share is
+/// loaded once. @param at x at the block's begin and at one, two, four, ... steps from there
+void add_squares_together(const std::array<const double*, kTogether + 2>& at, double* sum) {
+  using Lanes = Eigen::Array<double, 4, 1>;
+  constexpr auto kLanes = static_cast<std::size_t>(Lanes::SizeAtCompileTime);
+  std::array<Lanes, kTogether> lanes;
+  lanes.fill(Lanes::Zero());
+  const auto load = [&](std::size_t from, std::size_t k) -> Lanes { return Eigen::Map<const Lanes>(at[from] + k); };
+  for (std::size_t k = 0; k < kBlock; k += kLanes) {
+    const Lanes begin = load(0, k);
+    Lanes middle = load(1, k);
+    for (std::size_t j = 0; j < kTogether; ++j) {
+      const Lanes end = load(j + 2, k);
+      lanes[j] += (end + begin - 2.0 * middle).square();
+      middle = end;
+    }
+  }
+  for (std::size_t j = 0; j < kTogether; ++j) sum[j] += lanes[j].sum();
+}
+
+/// sum y_k; eight sums at a time.
+double total(const double* y, std::size_t count) {
+  constexpr std::size_t kLanes = 8;
+  std::array<double, kLanes> sum{};
+  std::size_t k = 0;
+  for (; k + kLanes <= count; k += kLanes) {
+    for (std::size_t i = 0; i < kLanes; ++i) sum[i] += y[k + i];
+  }
+  double rest = 0.0;
+  for (; k < count; ++k) rest += y[k];
+  for (const double one : sum) rest += one;
+  return rest;
+}
+
+/// Readings become the sum of what came so far less the mean: x from x_1 on, for x_0 is zero.
+void integrate(std::vector<double>& readings) {
+  const std::size_t chunks = (readings.size() + kChunk - 1) / kChunk;
+  const auto size = [&](std::size_t chunk) { return std::min(kChunk, readings.size() - chunk * kChunk); };
+  std::vector<double> sum(chunks);
+  share_out(chunks, [&](std::size_t chunk) { sum[chunk] = total(readings.data() + chunk * kChunk, size(chunk)); });
+  const double mean = total(sum.data(), chunks) / static_cast<double>(readings.size());
+  std::vector<double> before(chunks);
+  for (std::size_t chunk = 1; chunk < chunks; ++chunk)
+    before[chunk] = before[chunk - 1] + (sum[chunk - 1] - mean * static_cast<double>(kChunk));
+  share_out(chunks, [&](std::size_t chunk) {
+    double integral = before[chunk];
+    double* const reading = readings.data() + chunk * kChunk;
+    for (std::size_t k = 0; k < size(chunk); ++k) reading[k] = integral += reading[k] - mean;
+  });
 }
 
 /// Sums for every m that begin in one chunk of x.
@@ -48,8 +99,14 @@ void add_chunk(const std::vector<double>& x, const std::vector<std::size_t>& m, 
   const std::size_t n = x.size();
   const std::size_t end = std::min(n, (chunk + 1) * kChunk);
   for (std::size_t from = chunk * kChunk; from < end; from += kBlock) {
-    for (std::size_t j = 0; j < m.size() && from + 2 * m[j] < n; ++j) {
-      const double* const first = x.data() + from;
+    const double* const first = x.data() + from;
+    std::size_t j = 0;
+    for (; j + kTogether <= m.size() && from + 2 * m[j + kTogether - 1] + kBlock <= n; j += kTogether) {
+      std::array<const double*, kTogether + 2> at{first};
+      for (std::size_t i = 0; i <= kTogether; ++i) at[i + 1] = first + (m[j] << i);
+      add_squares_together(at, &sum[j]);
+    }
+    for (; j < m.size() && from + 2 * m[j] < n; ++j) {
       sum[j] += squares(first + 2 * m[j], first + m[j], first, std::min(kBlock, n - 2 * m[j] - from));
     }
   }
@@ -151,32 +208,14 @@ double wander_shape(double tau, double T) {
 }  // namespace
 
 std::vector<AllanPoint> allan_deviation(std::vector<double> readings, double period) {
-  double mean = 0.0;
-  for (const double reading : readings) mean += reading;
-  mean /= static_cast<double>(readings.size());
-  // x from x_1 on: x_0 is zero
-  std::vector<double>& x = readings;
-  double integral = 0.0;
-  for (double& reading : readings) reading = integral += reading - mean;
-
+  integrate(readings);
+  const std::vector<double>& x = readings;
   const std::size_t n = readings.size() + 1;
   std::vector<std::size_t> m;
   for (std::size_t step = 1; 2 * step < n; step *= 2) m.push_back(step);
   const std::size_t chunks = (x.size() + kChunk - 1) / kChunk;
   std::vector<std::vector<double>> part(chunks, std::vector<double>(m.size(), 0.0));
-  std::atomic<std::size_t> next{0};
-  const auto work = [&] {
-    for (std::size_t chunk = next++; chunk < chunks; chunk = next++) add_chunk(x, m, chunk, part[chunk]);
-  };
-  std::vector<std::thread> threads;
-  try {
-    for (std::size_t t = 1; t < std::min<std::size_t>(chunks, std::max(1U, std::thread::hardware_concurrency())); ++t)
-      threads.emplace_back(work);
-  } catch (const std::system_error&) {
-    // no more threads to be had: those there are do the work
-  }
-  work();
-  for (std::thread& thread : threads) thread.join();
+  share_out(chunks, [&](std::size_t chunk) { add_chunk(x, m, chunk, part[chunk]); });
   std::vector<double> sum(m.size());
   for (std::size_t j = 0; j < m.size(); ++j) {
     const double first = x[2 * m[j] - 1] - 2.0 * x[m[j] - 1];

@@ -5,15 +5,12 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <cstdio>
-#include <exception>
 #include <limits>
 #include <numeric>
-#include <system_error>
-#include <thread>
 
+#include "trunnion/calibration/share_out.hpp"
 #include "trunnion/core/error.hpp"
 #include "trunnion/core/units.hpp"
 #include "trunnion/turntable/two_axis.hpp"
@@ -370,28 +367,7 @@ class Search {
     trial.cost = cost_of(sigmas_with(trial), wanted_);
   }
   void evaluate(std::vector<Trial>& trials) const {
-    std::atomic<std::size_t> next{0};
-    std::vector<std::exception_ptr> failed(trials.size());
-    const auto work = [&] {
-      for (std::size_t i = next++; i < trials.size(); i = next++) {
-        try {
-          evaluate(trials[i]);
-        } catch (...) {
-          failed[i] = std::current_exception();
-        }
-      }
-    };
-    std::vector<std::thread> threads;
-    try {
-      for (unsigned t = 1; t < std::max(1U, std::thread::hardware_concurrency()); ++t) threads.emplace_back(work);
-    } catch (const std::system_error&) {
-      // no more threads to be had: those there are do the work
-    }
-    work();
-    for (std::thread& thread : threads) thread.join();
-    for (const std::exception_ptr& one : failed) {
-      if (one) std::rethrow_exception(one);
-    }
+    calibration::share_out(trials.size(), [&](std::size_t i) { evaluate(trials[i]); });
   }
   void take(const Trial& trial) {
     blocks_[trial.recording] = trial.blocks;
