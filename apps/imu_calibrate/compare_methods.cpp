@@ -9,6 +9,7 @@
 #include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "../outputs.hpp"
 #include "../terminal.hpp"
@@ -59,18 +60,34 @@ class Methods {
         const calibration::Solution solution =
             calibration::solve_table(recordings_, rig_.rig, run_.site, table_options(run_, names_));
         column.lacks = calibration::describe(solution.observability);
-        if (column.lacks.empty()) column.M = solution.record.value.unit.gyro.M;
+        if (column.lacks.empty()) unit_ = solution.record.value.unit;
+        if (column.lacks.empty()) column.M = unit_->gyro.M;
       } else if (method == "kalman_36") {
-        calibration::Kalman36 filter(run_.recordings.front().name());
-        feed(run_.recordings.front(), filter);
+        // it knows one recording: each entry is of that which knows it best, and of none where all know no more than
+        // before
         calibration::Kalman36Options options;
         options.noise = noise();
-        const calibration::Kalman36Result result = filter.finish(run_.site, options);
-        take(result.unit, column);
-        // an entry that is as uncertain as it was before says nothing
-        for (int i = 0; i < 9; ++i) {
-          if (!(result.covariance(6 + i, 6 + i) < kUnknown * kUnknown)) column.M(i / 3, i % 3) = std::nan("");
+        Mat3<double> least = Mat3<double>::Constant(kUnknown * kUnknown);
+        std::string why;
+        column.frame_of_the_case = false;
+        for (const io::RecordingFiles& files : run_.recordings) {
+          calibration::Kalman36 filter(files.name());
+          feed(files, filter);
+          try {
+            const calibration::Kalman36Result result = filter.finish(run_.site, options);
+            const Mat3<double> M = calibration::in_accelerometer_frame(result.unit).gyro.M;
+            for (int i = 0; i < 9; ++i) {
+              double& variance = least(i / 3, i % 3);
+              if (!(result.covariance(6 + i, 6 + i) < variance)) continue;
+              variance = result.covariance(6 + i, 6 + i);
+              column.M(i / 3, i % 3) = M(i / 3, i % 3);
+            }
+          } catch (const Error& e) {
+            if (e.code() != ExitCode::kInput && e.code() != ExitCode::kNumerics) throw;
+            why = e.what();
+          }
         }
+        if (column.M.array().isNaN().all()) column.lacks = why.empty() ? "no recording tells it anything" : why;
       } else {
         RunInputs inputs;
         calibration::HandSolveOptions options;
@@ -88,6 +105,15 @@ class Methods {
       if (e.code() != ExitCode::kInput && e.code() != ExitCode::kNumerics) throw;
       column.lacks = e.what();
     }
+    return column;
+  }
+
+  /// What twelve_position has found, in the frame that the methods without a table have.
+  [[nodiscard]] std::optional<Column> aligned() const {
+    if (!unit_) return std::nullopt;
+    Column column;
+    column.method = "twelve_position";
+    take(*unit_, column);
     return column;
   }
 
@@ -114,6 +140,7 @@ class Methods {
   std::vector<std::string> names_;
   io::RigFile rig_;
   std::vector<calibration::TableRecording> recordings_;
+  std::optional<InertialUnit<double>> unit_;
 };
 
 }  // namespace
@@ -144,6 +171,10 @@ ExitCode compare_methods(const std::string& run, const std::string& methods, boo
     columns.push_back(all.column(method));
     if (by_name && !columns.back().lacks.empty())
       throw Error(ExitCode::kInput, run + ": " + method + " lacks what it needs: " + columns.back().lacks);
+  }
+  if (std::any_of(columns.begin(), columns.end(),
+                  [](const Column& c) { return !c.frame_of_the_case && c.lacks.empty(); })) {
+    if (const std::optional<Column> aligned = all.aligned()) columns.push_back(*aligned);
   }
   constexpr const char* kName = "xyz";
   nlohmann::ordered_json tree = {{"format", "trunnion-methods/1"}, {"run", run}};

@@ -336,7 +336,7 @@ ExitCode plan(const Options& o) {
       tree_of(*setup, plan, wanted, planning::cheapest_addition(setup->bench, plan, wanted));
   if (!o.output.empty()) write_plan(o, *setup, plan, wanted);
   if (o.format == "json")
-    std::printf("%s\n", json_text(tree).c_str());
+    std::printf("%s", json_text(tree).c_str());
   else
     print_plan(tree);
   if (!plan.predicted.refused.empty()) {

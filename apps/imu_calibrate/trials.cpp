@@ -298,6 +298,14 @@ Json conclude(const Json& all) {
         one[name]["times_ours"] = comparison::summarise(theirs).mean / comparison::summarise(reference).mean;
         one[name]["paired_p"] = comparison::paired_t_test(theirs, reference);
       }
+      if (name != std::string("installation_deg") ||
+          (method != std::string("traditional") && method != std::string("rate_test")))
+        continue;
+      const auto [on_the_log, solved] = pairs_of(all, method, "twelve_position", name);
+      if (on_the_log.size() > 1) {
+        one[name]["times_on_its_log"] = comparison::summarise(on_the_log).mean / comparison::summarise(solved).mean;
+        one[name]["paired_p_on_its_log"] = comparison::paired_t_test(on_the_log, solved);
+      }
     }
     const std::vector<double> pulls = figures_of(all, method, "squared_pulls");
     if (!pulls.empty()) {
@@ -377,6 +385,10 @@ void print(const Json& tree) {
   }
   std::printf("\n");
   for (const auto& [method, one] : tree["methods"].items()) {
+    if (one.contains("installation_deg") && one["installation_deg"].contains("times_on_its_log"))
+      std::printf("%s: installation %s times twelve_position's on the same log, paired p = %s\n", method.c_str(),
+                  figure(one["installation_deg"]["times_on_its_log"].get<double>(), 3).c_str(),
+                  figure(one["installation_deg"]["paired_p_on_its_log"].get<double>(), 2).c_str());
     if (one.contains("failures"))
       std::printf("%s: no result in %d trials\n", method.c_str(), one["failures"].get<int>());
     if (one.contains("nees"))
