@@ -38,6 +38,7 @@ using report::Table;
 
 constexpr std::array<const char*, 6> kAxis = {"gyro x", "gyro y", "gyro z", "accel x", "accel y", "accel z"};
 constexpr std::size_t kMostPoints = 1500;  // of a picture
+constexpr std::size_t kMostBars = 40;      // of a picture: a page holds it
 constexpr int kWeakest = 6;                // directions that are named
 
 struct Options {
@@ -62,6 +63,20 @@ Section parameters(const io::RunFile& run, const Solution& solution) {
   Table table{{"entry", "value", "1 sigma", "limit of sigma", "unit"}, {}};
   std::vector<std::vector<double>> bars;
   std::string labels;
+  const auto draw = [&] {
+    if (bars.empty()) return;
+    section.pictures.push_back(
+        report::gnuplot("1 sigma over its limit, logarithmic",
+                        report::data_block("bars", bars) + "set logscale x\nset xrange [1e-5:2]\nset yrange [" +
+                            std::to_string(bars.size()) + ":-1] \nset ytics (" + labels +
+                            ") font ',9'\nset grid x\nset lmargin 34\nunset key\nset arrow from 1, graph 0 to 1, "
+                            "graph 1 nohead lc rgb '#b3261e' lw 2\nplot $bars using "
+                            "(1e-5):2:(1e-5):1:($2-0.35):($2+0.35) with boxxyerror fs solid "
+                            "0.6 lc rgb '#30638e'\n",
+                        760, 90 + 15 * static_cast<int>(bars.size())));
+    bars.clear();
+    labels.clear();
+  };
   for (std::size_t i = 0; i < solution.parameters.size(); ++i) {
     const Parameter& p = solution.parameters[i];
     const double asked = run.limits[static_cast<std::size_t>(p.kind)].sigma;
@@ -69,21 +84,13 @@ Section parameters(const io::RunFile& run, const Solution& solution) {
     const double limit = stated ? asked : p.refuse_above * p.in_unit;
     const double sigma = sigma_of(solution, i) * p.in_unit;
     table.rows.push_back({p.name, figure(solution.x(static_cast<Eigen::Index>(i)) * p.in_unit, 6), figure(sigma, 3),
-                          figure(limit, 3) + (stated ? "" : " (refused)"), p.unit});
+                          (stated ? "" : "refused above ") + figure(limit, 3), p.unit});
     if (!calibration::has_verdict(p)) continue;
+    if (bars.size() == kMostBars) draw();
     labels += std::string(bars.empty() ? "" : ", ") + report::quoted(p.name) + " " + std::to_string(bars.size());
     bars.push_back({sigma / limit, static_cast<double>(bars.size())});
   }
-  const int height = 90 + 15 * static_cast<int>(bars.size());
-  section.pictures.push_back(
-      report::gnuplot("1 sigma over its limit, logarithmic",
-                      report::data_block("bars", bars) + "set logscale x\nset xrange [1e-5:2]\nset yrange [" +
-                          std::to_string(bars.size()) + ":-1] \nset ytics (" + labels +
-                          ") font ',9'\nset grid x\nset lmargin 34\nunset key\nset arrow from 1, graph 0 to 1, "
-                          "graph 1 nohead lc rgb '#b3261e' lw 2\nplot $bars using "
-                          "(1e-5):2:(1e-5):1:($2-0.35):($2+0.35) with boxxyerror fs solid "
-                          "0.6 lc rgb '#30638e'\n",
-                      760, height));
+  draw();
   section.tables.push_back(table);
   return section;
 }

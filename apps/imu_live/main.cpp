@@ -81,6 +81,10 @@ class Words {
 ExitCode live(const Options& o, SharedState& state) {
   const io::RunFile run = io::read_run_file(o.run);
   if (run.rig.empty()) throw Error(ExitCode::kInput, o.run + ": has no rig: live calibration is for a table");
+  if (run.temperature > 0)
+    throw Error(ExitCode::kInput, o.run +
+                                      ": model: temperature: a running estimate cannot know the range to come: record "
+                                      "the soak's channels to logs, and solve those");
   keep_inputs(o.output, files_of(run));
   const std::vector<std::string> mounts = mounts_of(run);
   const io::RigFile rig = io::read_rig(run.rig, run.outer_axis, run.inner_axis, mounts);

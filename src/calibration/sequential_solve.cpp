@@ -31,7 +31,7 @@ constexpr double kFloor = 1e-300;
 
 struct SequentialSolve::State {
   State(const Rig& r, const Site& s, TableSolveOptions o) : rig(r), site(s), options(std::move(o)) {
-    options.terms.temperature = 0;  // its range is not known before the end: the batch solve has them
+    options.terms.temperature = 0;  // its range is not known before the end
   }
 
   [[nodiscard]] std::size_t usable() const {

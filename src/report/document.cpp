@@ -43,10 +43,12 @@ h1 { font-size: 1.5rem; } h2 { font-size: 1.15rem; margin-top: 2.2rem; border-bo
 .verdict { font-size: 1.15rem; font-weight: 600; padding: .6rem .8rem; border-left: .4rem solid; }
 .good { border-color: #2a7d3f; background: #eef7f0; } .bad { border-color: #b3261e; background: #fdf0ef; }
 .wide { overflow-x: auto; } table { border-collapse: collapse; font-size: .85rem; margin: .8rem 0; }
-th, td { padding: .2rem .6rem; border-bottom: 1px solid #e3e3e3; text-align: left; white-space: nowrap; }
-td.n { text-align: right; font-variant-numeric: tabular-nums; }
+th, td { padding: .2rem .6rem; border-bottom: 1px solid #e3e3e3; text-align: left; }
+td.n { text-align: right; white-space: nowrap; font-variant-numeric: tabular-nums; }
 figure { margin: 1rem 0; } figcaption { font-size: .85rem; color: #444; } figure svg { width: 100%; height: auto; }
-@media print { body { font-size: 10pt; max-width: none; } h2 { break-after: avoid; } figure, tr { break-inside: avoid; } }
+@media (max-width: 40rem) { table { font-size: .75rem; } th, td { padding: .15rem .3rem; } }
+@media print { body { font-size: 10pt; max-width: none; padding: 0; } h2 { break-after: avoid; } figure, tr { break-inside: avoid; }
+  .wide { overflow: visible; } table { font-size: 8pt; } th, td { padding: .1rem .4rem; } figure svg { max-height: 20cm; } }
 )";
 
 }  // namespace
