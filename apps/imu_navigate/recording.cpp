@@ -10,6 +10,7 @@
 
 #include "../terminal.hpp"
 #include "trunnion/core/units.hpp"
+#include "trunnion/error_model/stream_correction.hpp"
 #include "trunnion/io/calibration_file.hpp"
 #include "trunnion/io/csv.hpp"
 #include "trunnion/io/fault.hpp"
@@ -37,10 +38,13 @@ class Collector final : public SampleSink {
     if (clock_forgets_first_) {
       samples_.clear();
       utimes_.clear();
+      celsius_.clear();
     }
     utimes_.push_back(utime);
     samples_.push_back(sample);
+    celsius_.push_back(told_);
   }
+  void temperature(double celsius) override { told_ = celsius; }
   void encoder(std::int64_t utime, double azimuth, double) override {
     if (!accepted(axis_clock_, utime, "encoder")) return;
     if (clock_forgets_first_) angles_.clear();
@@ -50,6 +54,7 @@ class Collector final : public SampleSink {
 
   std::vector<std::int64_t> utimes_;
   std::vector<InertialSample<double>> samples_;
+  std::vector<double> celsius_;
   std::vector<Stamped> angles_;
   std::vector<std::int64_t> pulses_;
 
@@ -81,6 +86,7 @@ class Collector final : public SampleSink {
   ChannelClock clock_;
   ChannelClock axis_clock_;
   bool clock_forgets_first_ = false;
+  double told_ = std::nan("");
 };
 
 void read_log(const RecordingSource& source, Collector& collector, Recording& recording) {
@@ -168,6 +174,7 @@ void fill(const RecordingSource& source, const Collector& collector, Recording& 
         const double share = static_cast<double>(k) / (missing + 1);
         recording.stamp.push_back(before + share * step);
         recording.sample.push_back({last.w + share * (next.w - last.w), last.f + share * (next.f - last.f)});
+        recording.celsius.push_back(collector.celsius_[i]);
         ++recording.filled;
       }
       clock += recording.period * (1 + std::max(0, missing));
@@ -175,6 +182,7 @@ void fill(const RecordingSource& source, const Collector& collector, Recording& 
     }
     recording.stamp.push_back(t);
     recording.sample.push_back(next);
+    recording.celsius.push_back(collector.celsius_[i]);
   }
   const double elapsed = recording.stamp.back() - recording.stamp.front();
   const double counted = recording.period * static_cast<double>(recording.stamp.size() - 1);
@@ -254,14 +262,16 @@ Recording read_recording(const RecordingSource& source) {
     throw io::input_error(axis, 0, "", "fewer than two index pulses");
   if (!source.calibration.empty()) {
     const InertialUnit<double> unit = io::read_calibration_file(source.calibration).record.value.unit;
-    if (unit.thermal.order() > 0 || !unit.accel_place.isZero(0.0)) {
-      std::fprintf(stderr,
-                   "%s: has terms of temperature or of the size effect, which are not applied: recordings are read "
-                   "without temperature\n",
-                   source.calibration.c_str());
+    if (unit.thermal.order() > 0 && std::none_of(recording.celsius.begin(), recording.celsius.end(),
+                                                 [](double celsius) { return std::isfinite(celsius); }))
+      recording.warnings.push_back(source.calibration +
+                                   " has terms of temperature, and the recording states none: at " +
+                                   figure(unit.thermal.reference, 4) + " degC");
+    StreamCorrection<double> correction(unit);
+    for (std::size_t i = 0; i < recording.sample.size(); ++i) {
+      correction.set_temperature(recording.celsius[i]);
+      recording.sample[i] = correction.correct(recording.stamp[i], recording.sample[i]);
     }
-    const UnitCorrection<double> correction(unit);
-    for (InertialSample<double>& s : recording.sample) s = correction.correct(s);
   }
   return recording;
 }

@@ -26,6 +26,7 @@ struct RecordingSource {
 struct Recording {
   std::vector<double> stamp;                   // s, of the end of each sample
   std::vector<InertialSample<double>> sample;  // means over the period that ends at the stamp
+  std::vector<double> celsius;                 // degC, of each sample; not a number where it is not stated
   std::vector<double> angle;                   // rad, of the axis at each stamp, not wrapped; empty without an encoder
   std::vector<double> pulse;                   // s; empty without an index
   double period = 0.0;                         // s
