@@ -252,7 +252,28 @@ std::vector<double> figures_of(const Json& all, const std::string& method, const
 }
 
 Json summary_tree(const comparison::Summary& s) {
-  return {{"n", s.n}, {"mean", s.mean}, {"s", s.deviation}, {"low", s.low}, {"high", s.high}};
+  Json tree = {{"n", s.n}, {"mean", s.mean}};
+  if (s.n > 1) tree.update({{"s", s.deviation}, {"low", s.low}, {"high", s.high}});  // one value says nothing of these
+  return tree;
+}
+
+/// "1-4, 6-10"
+std::string seeds_of(const Json& all) {
+  std::string text;
+  std::uint64_t last = 0;
+  bool open = false;  // a range whose end is not written
+  for (const Json& trial : all["trials"]) {
+    const auto seed = trial["seed"].get<std::uint64_t>();
+    if (!text.empty() && seed == last + 1) {
+      open = true;
+    } else {
+      if (open) text += "-" + std::to_string(last);
+      open = false;
+      text += (text.empty() ? "" : ", ") + std::to_string(seed);
+    }
+    last = seed;
+  }
+  return open ? text + "-" + std::to_string(last) : text;
 }
 
 /// The values of two methods on the seeds that both have.
@@ -273,6 +294,7 @@ std::pair<std::vector<double>, std::vector<double>> pairs_of(const Json& all, co
 Json conclude(const Json& all) {
   Json tree;
   tree["trials"] = all["trials"].size();
+  tree["seeds"] = seeds_of(all);
   // ours, that the others are held against: on the experiment, or on the log of the rate tests
   const std::string ours = figures_of(all, "experiment", "installation_deg").empty() ? "twelve_position" : "experiment";
   for (const char* const method : comparison::kMethodNames) {
@@ -361,8 +383,8 @@ Json conclude(const Json& all) {
 }
 
 void print(const Json& tree) {
-  std::printf("%d trials; 95 %% intervals of means by Student's t, paired t-tests against ours\n",
-              tree["trials"].get<int>());
+  std::printf("trials of seeds %s; 95 %% intervals of means by Student's t, paired t-tests against ours\n",
+              tree["seeds"].get<std::string>().c_str());
   const std::vector<std::pair<const char*, const char*>> figures = {
       {"installation_deg", "installation, frame of the case [deg]"},
       {"aligned_deg", "cross-coupling, frame of the accelerometers [deg]"},
@@ -374,9 +396,12 @@ void print(const Json& tree) {
     for (const auto& [method, one] : tree["methods"].items()) {
       if (!one.contains(name)) continue;
       const Json& s = one[name];
-      std::printf("%-18s %8.0f %4d %11s %11s %24s", method.c_str(), one["table_s"].get<double>(), s["n"].get<int>(),
-                  figure(s["mean"].get<double>(), 3).c_str(), figure(s["s"].get<double>(), 3).c_str(),
-                  ("[" + figure(s["low"].get<double>(), 3) + ", " + figure(s["high"].get<double>(), 3) + "]").c_str());
+      std::printf(
+          "%-18s %8.0f %4d %11s %11s %24s", method.c_str(), one["table_s"].get<double>(), s["n"].get<int>(),
+          figure(s["mean"].get<double>(), 3).c_str(), s.contains("s") ? figure(s["s"].get<double>(), 3).c_str() : "-",
+          s.contains("low")
+              ? ("[" + figure(s["low"].get<double>(), 3) + ", " + figure(s["high"].get<double>(), 3) + "]").c_str()
+              : "-");
       if (s.contains("times_ours"))
         std::printf(" %9s %9s", figure(s["times_ours"].get<double>(), 3).c_str(),
                     figure(s["paired_p"].get<double>(), 2).c_str());
@@ -437,15 +462,30 @@ ExitCode trials(const Options& o) {
   check_outputs({o.output, o.csv}, o.inputs);
   if (!o.merge && o.inputs.size() != 1) throw Error(ExitCode::kUsage, "one run file, or --merge and result files");
   const Json all = o.merge ? merged(o.inputs) : run_trials(o);
+  if (o.merge && !o.output.empty() && fs::exists(o.output)) {
+    // nothing that was there goes but what comes again
+    std::set<std::uint64_t> seeds;
+    for (const Json& trial : all["trials"]) seeds.insert(trial["seed"].get<std::uint64_t>());
+    for (const Json& trial : read_trials(o.output)["trials"]) {
+      const auto seed = trial["seed"].get<std::uint64_t>();
+      if (seeds.count(seed) == 0)
+        throw Error(ExitCode::kUsage,
+                    o.output + ": has seed " + std::to_string(seed) +
+                        ", which the files to be merged do not have: name it among them, or another output");
+    }
+  }
   if (!o.output.empty()) io::write_whole(o.output, json_text(all));
   if (!o.csv.empty()) io::write_whole(o.csv, csv_of(all));
-  if (all["trials"].empty()) return ExitCode::kDone;
+  if (all["trials"].empty()) return interrupted() ? ExitCode::kInterrupted : ExitCode::kDone;
   const Json tree = conclude(all);
   if (o.format == "json")
     std::printf("%s", json_text(tree).c_str());
   else
     print(tree);
-  return ExitCode::kDone;
+  if (!interrupted()) return ExitCode::kDone;
+  std::fprintf(stderr, "interrupted; %s\n",
+               o.output.empty() ? "without -o the trials are lost" : "the same command goes on from here");
+  return ExitCode::kInterrupted;
 }
 
 }  // namespace
@@ -455,23 +495,28 @@ void add_trials(CLI::App& app, ExitCode& exit_code) {
       "trials", "A campaign over seeds: simulate, calibrate by every method, navigate; means, intervals, tests");
   auto o = std::make_shared<Options>();
   command->add_option("run", o->inputs, "Run file: its rig, sheet and site; with --merge, result files")->required();
-  command->add_option("--seeds", o->seeds, "How many, or FROM-TO")->capture_default_str();
+  CLI::Option* const merge = command->add_flag("--merge", o->merge, "Put result files of other seeds together");
+  command->add_option("--seeds", o->seeds, "How many, or FROM-TO")->capture_default_str()->excludes(merge);
   command
       ->add_option(
           "--methods", o->methods,
           "all, or some of traditional, rate_test, kalman_36, by_hand, three_axis, twelve_position, experiment")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->excludes(merge);
   command->add_option("--mount-error-deg", o->mount_error_deg, "1 sigma of the fixture's errors about each axis")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 5.0));
+      ->check(CLI::Range(0.0, 5.0))
+      ->excludes(merge);
   command->add_option("--navigations", o->navigations, "Hours of navigation a seed")
       ->capture_default_str()
-      ->check(CLI::Range(0, 1000));
-  command->add_option("-o,--output", o->output, "Result file (JSON) to write; what is in it already is not run again");
+      ->check(CLI::Range(0, 1000))
+      ->excludes(merge);
+  command->add_option("-o,--output", o->output,
+                      "Result file (JSON) to write; what is in it already is not run again, nor taken out by a merge");
   command->add_option("--csv", o->csv, "The same by seed and method, as CSV");
   command->add_option("-j,--jobs", o->jobs, "Seeds at a time; default as many as the machine has cores")
-      ->check(CLI::Range(1, 1024));
-  command->add_flag("--merge", o->merge, "Put result files of other seeds together");
+      ->check(CLI::Range(1, 1024))
+      ->excludes(merge);
   command->add_option("--format", o->format, "Of the result on standard output")
       ->capture_default_str()
       ->check(CLI::IsMember({"text", "json"}));
