@@ -466,7 +466,8 @@ ExitCode trials(const Options& o) {
     // nothing that was there goes but what comes again
     std::set<std::uint64_t> seeds;
     for (const Json& trial : all["trials"]) seeds.insert(trial["seed"].get<std::uint64_t>());
-    for (const Json& trial : read_trials(o.output)["trials"]) {
+    const Json before = read_trials(o.output);
+    for (const Json& trial : before["trials"]) {
       const auto seed = trial["seed"].get<std::uint64_t>();
       if (seeds.count(seed) == 0)
         throw Error(ExitCode::kUsage,
