@@ -75,6 +75,12 @@ long long apply_to_log(const io::RecordingFiles& files, const io::LcmChannels& c
         "no usable message on the IMU channel '" + channels.imu.name + "'" + (fault.empty() ? "" : ": " + fault));
   }
   out.commit();
+  if (corrector.without_temperature() > 0)
+    std::fprintf(
+        stderr,
+        "%lld samples state no temperature, and the calibration has terms of it: corrected at the last one, or "
+        "at its reference\n",
+        corrector.without_temperature());
   const long long records = log.lost_records() + messages.damaged();
   if (records > 0)
     std::fprintf(stderr, "%lld damaged records, %lld bytes passed over\n", records,

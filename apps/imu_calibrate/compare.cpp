@@ -58,8 +58,15 @@ std::vector<Difference> differences(const io::CalibrationFile& a, const io::Cali
       }
     }
   };
-  matrix("gyro", va.unit.gyro.M, vb.unit.gyro.M, sa.unit.gyro.M, sb.unit.gyro.M);
-  vector("gyro bias", va.unit.gyro.bias, vb.unit.gyro.bias, sa.unit.gyro.bias, sb.unit.gyro.bias, "deg/h", kDegPerH);
+  // about two temperatures, biases, scales and polynomials are of different things
+  const bool same_reference = (va.unit.thermal.order() == 0 && vb.unit.thermal.order() == 0) ||
+                              va.unit.thermal.reference == vb.unit.thermal.reference;
+  if (!same_reference)
+    std::fprintf(stderr, "biases, matrices and their polynomials are about %s and %s degC: they are not compared\n",
+                 figure(va.unit.thermal.reference, 4).c_str(), figure(vb.unit.thermal.reference, 4).c_str());
+  if (same_reference) matrix("gyro", va.unit.gyro.M, vb.unit.gyro.M, sa.unit.gyro.M, sb.unit.gyro.M);
+  if (same_reference)
+    vector("gyro bias", va.unit.gyro.bias, vb.unit.gyro.bias, sa.unit.gyro.bias, sb.unit.gyro.bias, "deg/h", kDegPerH);
   vector("gyro cubic", va.unit.gyro.cubic, vb.unit.gyro.cubic, sa.unit.gyro.cubic, sb.unit.gyro.cubic, "ppm/(rad/s)^2",
          1e6);
   for (int i = 0; i < 3; ++i) {
@@ -67,9 +74,10 @@ std::vector<Difference> differences(const io::CalibrationFile& a, const io::Cali
            vb.unit.g_sensitivity.row(i).transpose(), sa.unit.g_sensitivity.row(i).transpose(),
            sb.unit.g_sensitivity.row(i).transpose(), "deg/h/g", kDegPerH * kStandardGravity);
   }
-  matrix("accelerometer", va.unit.accel.M, vb.unit.accel.M, sa.unit.accel.M, sb.unit.accel.M);
-  vector("accelerometer bias", va.unit.accel.bias, vb.unit.accel.bias, sa.unit.accel.bias, sb.unit.accel.bias, "ug",
-         kMicroG);
+  if (same_reference) matrix("accelerometer", va.unit.accel.M, vb.unit.accel.M, sa.unit.accel.M, sb.unit.accel.M);
+  if (same_reference)
+    vector("accelerometer bias", va.unit.accel.bias, vb.unit.accel.bias, sa.unit.accel.bias, sb.unit.accel.bias, "ug",
+           kMicroG);
   vector("accelerometer quadratic", va.unit.accel.quadratic, vb.unit.accel.quadratic, sa.unit.accel.quadratic,
          sb.unit.accel.quadratic, "ppm/(m/s^2)", 1e6);
   vector("gyro asymmetry", va.unit.gyro.asymmetry, vb.unit.gyro.asymmetry, sa.unit.gyro.asymmetry,
@@ -85,8 +93,7 @@ std::vector<Difference> differences(const io::CalibrationFile& a, const io::Cali
            (vb.unit.thermal.*of)[k].*sensor, (sa.unit.thermal.*of)[k].*sensor, (sb.unit.thermal.*of)[k].*sensor,
            (unit + std::string(k == 0 ? "/K" : "/K^" + std::to_string(k + 1))).c_str(), in_unit);
   };
-  // polynomials about two temperatures have nothing to do with each other, entry by entry
-  if (va.unit.thermal.reference == vb.unit.thermal.reference) {
+  if (same_reference) {
     using Thermal = ThermalErrors<double>;
     for (std::size_t k = 0; k < Thermal::kMostOrder; ++k) {
       thermal("gyro bias", k, &Thermal::bias, &InertialSample<double>::w, "deg/h", kDegPerH);

@@ -42,7 +42,14 @@ struct Content {
   UnitOutput<double> error_bound{};
   UnitScale<double> scale;
   InertialUnit<double> unit;
-  bool beyond_second_order = false;  // terms of temperature that the coefficients do not carry
+
+  /// Terms of temperature that the coefficients do not carry.
+  [[nodiscard]] bool beyond_second_order() const { return !unit.thermal.is_quadratic_bias(); }
+  /// ... or anything else that the unit itself has and they have not.
+  [[nodiscard]] bool needs_unit() const {
+    return beyond_second_order() || !unit.accel_place.isZero(0.0) ||
+           (unit.thermal.order() > 0 && std::isfinite(unit.thermal.lowest));
+  }
 };
 
 /// printf into @p out.
@@ -80,7 +87,7 @@ void add(std::string& out, const UnitCorrection<float>::Bend& bend) {
   out += "{";
   add(out, bend.A);
   out += ",\n     ";
-  add(out, bend.asymmetry);
+  add(out, bend.half_asymmetry);
   out += ", ";
   add(out, bend.quadratic);
   out += ", ";
@@ -114,8 +121,7 @@ std::string in_comment(const std::string& name) {
 std::string unit_of_header(const InertialUnit<double>& unit, const UnitScale<double>& scale) {
   std::string out;
   out +=
-      "// Terms of temperature beyond the biases' second order: ThermalCorrection<float>(unit(), scale()) takes "
-      "them.\n";
+      "// For StreamCorrection<float>(unit(), scale()): all orders of temperature, its range, and the size effect.\n";
   out += "inline trunnion::InertialUnit<float> unit() {\n  trunnion::InertialUnit<float> u;\n";
   const auto vector = [&](const std::string& of, const Vec3<double>& v) {
     if (!v.isZero(0.0)) add(out, "  u.%s << %aF, %aF, %aF;\n", of.c_str(), v.x(), v.y(), v.z());
@@ -157,7 +163,8 @@ std::string header_of(const Content& content, const Options& o, const std::strin
   add(out, "// Unit: %s\n", in_comment(block.name.data()).c_str());
   if (o.recording > 0) add(out, "// Turn-on bias: recording %d\n", o.recording);
   out += "#pragma once\n// clang-format off\n\n#include \"trunnion/error_model/count_correction.hpp\"\n";
-  out += "#include \"trunnion/error_model/inertial_unit.hpp\"\n\n";
+  out += content.needs_unit() ? "#include \"trunnion/error_model/stream_correction.hpp\"\n\n"
+                              : "#include \"trunnion/error_model/inertial_unit.hpp\"\n\n";
   add(out, "namespace %s {\n\n", o.name.c_str());
   if (block.has_counts != 0) {
     add(out,
@@ -167,9 +174,8 @@ std::string header_of(const Content& content, const Options& o, const std::strin
   } else {
     out += "// For readings in rad/s and m/s^2.\n";
   }
-  if (content.beyond_second_order) {
-    out += unit_of_header(content.unit, content.scale);
-  } else {
+  if (content.needs_unit()) out += unit_of_header(content.unit, content.scale);
+  if (!content.beyond_second_order()) {
     out += "inline constexpr trunnion::UnitCorrection<float>::Coefficients kUnit = {\n    ";
     add(out, block.unit.accel);
     out += ",\n    ";
@@ -262,14 +268,18 @@ Content content_of(const io::CalibrationFile& file, const Options& o) {
     }
   }
   content.unit = unit;
-  content.beyond_second_order = !unit.thermal.is_quadratic_bias();
-  if (content.beyond_second_order && !o.block.empty())
+  if (content.beyond_second_order() && !o.block.empty())
     throw io::input_error(o.calibration, 0, "temperature",
-                          "a block holds the biases' first and second order, and there is more: write a header");
+                          "a block holds the biases' first and second order, and here a scale moves too, or a bias "
+                          "beyond that: write a header");
+  const auto& thermal = unit.thermal;
+  if (!content.beyond_second_order() && thermal.order() > 0 && std::isfinite(thermal.lowest))
+    std::fprintf(stderr, "%s: was calibrated from %s to %s degC; the coefficients do not stop there, unit() does\n",
+                 o.calibration.c_str(), figure(thermal.lowest, 4).c_str(), figure(thermal.highest, 4).c_str());
   if (!unit.accel_place.isZero(0.0)) {
     std::fprintf(stderr,
-                 "%s: the size effect is not in the coefficients: up to %s m/s^2 at 1 rad/s "
-                 "(error_model/size_effect.hpp)\n",
+                 "%s: the size effect is not in the coefficients: up to %s m/s^2 at 1 rad/s; "
+                 "StreamCorrection<float>(unit(), scale()) takes it\n",
                  o.calibration.c_str(), figure(unit.accel_place.colwise().norm().maxCoeff(), 2).c_str());
   }
   content.block.unit = UnitCorrection<float>(unit, content.scale).coefficients();

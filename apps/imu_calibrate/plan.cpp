@@ -26,8 +26,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kUsedRange = 0.9;  // of the gyros' range
-constexpr double kDwell = 40.0;     // s, of a position
+constexpr double kUsedRange = 0.9;      // of the gyros' range
+constexpr double kMargin = 0.98;        // of a sigma wanted: a solve's own is within a hundredth of the predicted
+constexpr double kLeastSoak = 10.0;     // K
+constexpr double kLongestSoak = 86400;  // s
+constexpr double kDwell = 40.0;         // s, of a position
 constexpr double kSlowTurn = 10.0 * kRadPerDeg;
 
 struct Options {
@@ -84,6 +87,9 @@ std::unique_ptr<Setup> setup_of(const Options& o) {
   }
   if (o.preset == "soak") {
     s.run.soak = {o.temperatures[0], o.temperatures[1], o.kelvin_per_minute / 60.0};
+    if (!(std::abs(s.run.soak.to - s.run.soak.from) >= kLeastSoak) || s.run.soak.duration() > kLongestSoak)
+      throw Error(ExitCode::kUsage,
+                  "--temperatures-deg-c, --k-per-min: a soak is of 10 K or more, and of a day or less");
     s.run.temperature = o.order;
   }
   if (!s.run.sheet.has_noise)
@@ -230,9 +236,12 @@ void write_plan(const Options& o, const Setup& s, const planning::Plan& plan, co
                  o.run.c_str());
   std::string limits;
   for (std::size_t i = 0; i < wanted.size(); ++i) {
-    if (std::isfinite(wanted[i]))
-      limits +=
-          std::string(limits.empty() ? "" : ", ") + kEntryKinds[i].key + ": {sigma: " + figure(wanted[i], 6) + "}";
+    const double value = s.run.limits[i].value;
+    if (!std::isfinite(wanted[i]) && !(value >= 0.0)) continue;
+    limits += std::string(limits.empty() ? "" : ", ") + kEntryKinds[i].key + ": {";
+    if (value >= 0.0) limits += "value: " + figure(value, 12) + (std::isfinite(wanted[i]) ? ", " : "");
+    if (std::isfinite(wanted[i])) limits += "sigma: " + figure(wanted[i], 6);
+    limits += "}";
   }
   if (!limits.empty()) run += "limits: {" + limits + "}\n";
   run += "recordings:\n";
@@ -308,6 +317,23 @@ void print_plan(const nlohmann::ordered_json& tree) {
   }
 }
 
+/// Refuses (input) a plan in which the sensors would be at their range.
+void hold_against_ranges(const Setup& s, const planning::Plan& plan) {
+  const io::SensorSheet& sheet = s.run.sheet;
+  const double rate = planning::largest_rate_of(plan);
+  char text[160];
+  if (sheet.gyro_range > 0.0 && rate >= sheet.gyro_range) {
+    std::snprintf(text, sizeof text, ": the plan turns at %.4g deg/s, and the gyros' range is %.4g", rate / kRadPerDeg,
+                  sheet.gyro_range / kRadPerDeg);
+    throw Error(ExitCode::kInput, s.run.sheet_path + text);
+  }
+  if (sheet.accel_range > 0.0 && s.run.site.gravity >= sheet.accel_range) {
+    std::snprintf(text, sizeof text, ": the accelerometers' range of %.4g g does not hold gravity",
+                  sheet.accel_range / kStandardGravity);
+    throw Error(ExitCode::kInput, s.run.sheet_path + text);
+  }
+}
+
 ExitCode plan(const Options& o) {
   const std::unique_ptr<Setup> setup = setup_of(o);
   const planning::WantedSigmas wanted = wanted_of(o, *setup);
@@ -326,7 +352,9 @@ ExitCode plan(const Options& o) {
                   "what for? state an accuracy (--sigma KIND=SIGMA, --as-good-as PRESET, limits of a run file), with "
                   "--time-s or without; or take a --preset");
     ProgressLine progress;
-    plan = planning::search(setup->bench, wanted, o.time, o.longest, [&](double time, double worst) {
+    planning::WantedSigmas aimed_at = wanted;
+    for (double& sigma : aimed_at) sigma *= kMargin;
+    plan = planning::search(setup->bench, aimed_at, o.time, o.longest, [&](double time, double worst) {
       progress.show("plan of " + figure(time, 4) + " s: worst sigma " + figure(worst, 3) + " times the wanted");
     });
     for (std::size_t r = 0; r < plan.recordings.size(); ++r)
@@ -334,7 +362,8 @@ ExitCode plan(const Options& o) {
   }
   const nlohmann::ordered_json tree =
       tree_of(*setup, plan, wanted, planning::cheapest_addition(setup->bench, plan, wanted));
-  if (!o.output.empty()) write_plan(o, *setup, plan, wanted);
+  hold_against_ranges(*setup, plan);
+  if (!o.output.empty() && plan.predicted.refused.empty()) write_plan(o, *setup, plan, wanted);
   if (o.format == "json")
     std::printf("%s", json_text(tree).c_str());
   else
@@ -380,7 +409,10 @@ void add_plan(CLI::App& app, ExitCode& exit_code) {
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
   command->add_option("--sheet", o->sheet, "Sensor sheet of the unit")->excludes(run);
-  command->add_option("--rig", o->rig, "URDF of the table: its limits and mounts")->excludes(run);
+  command
+      ->add_option("--rig", o->rig,
+                   "URDF of the table: its limits and mounts; apps/share/level_gimbal.urdf has joints without end")
+      ->excludes(run);
   command->add_option("--mounts", o->mounts, "Of the rig; all of them otherwise")->excludes(run);
   command->add_option("--latitude-deg", o->latitude_deg, "Of the bench")
       ->capture_default_str()

@@ -100,6 +100,12 @@ OneRecording one_recording(const std::string& input, const std::string& channel,
   return one;
 }
 
+void BeforeAndAfter::say_what_is_missing(const InertialUnit<double>& unit, const std::string& name) const {
+  if (unit.thermal.order() > 0 && !has_temperature_)
+    std::fprintf(stderr, "%s: states no temperature, and the calibration has terms of it: corrected at %s degC\n",
+                 name.c_str(), figure(unit.thermal.reference, 4).c_str());
+}
+
 calibration::CompressOptions compress_options(const io::RunFile& run, const io::RecordingFiles& files) {
   calibration::CompressOptions options;
   options.name = files.name();

@@ -55,7 +55,12 @@ class BeforeAndAfter final : public SampleSink {
     before.imu(utime, sample);
     after.imu(utime, correction_.correct(1e-6 * static_cast<double>(utime), sample));
   }
-  void temperature(double celsius) override { correction_.set_temperature(celsius); }
+  void temperature(double celsius) override {
+    has_temperature_ = true;
+    correction_.set_temperature(celsius);
+  }
+  /// On standard error, where @p unit has terms of temperature and nothing told one.
+  void say_what_is_missing(const InertialUnit<double>& unit, const std::string& name) const;
   void encoder(std::int64_t utime, double azimuth, double pitch) override {
     before.encoder(utime, azimuth, pitch);
     after.encoder(utime, azimuth, pitch);
@@ -65,6 +70,7 @@ class BeforeAndAfter final : public SampleSink {
 
  private:
   StreamCorrection<double> correction_;
+  bool has_temperature_ = false;
 };
 
 /// Reads and compresses every recording, on as many threads as the machine has. @p mounts: names, in the rig's order

@@ -110,6 +110,7 @@ Section residuals(const io::RunFile& run, const io::RigFile& rig, const io::Cali
     BeforeAndAfter both(compress_options(run, run.recordings[r]), file.record.value.unit);
     std::vector<std::pair<std::string, std::string>> digests;
     io::read_recording(run, run.recordings[r], both, digests);
+    both.say_what_is_missing(file.record.value.unit, run.recordings[r].name());
     const int mount = file.record.recording_mount[r];
     const calibration::Verification v = calibration::verify(both.before.finish(), both.after.finish(), mount,
                                                             file.record.value, rig.rig, run.site, noise);

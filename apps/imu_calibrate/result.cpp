@@ -108,6 +108,10 @@ void print_calibration(const calibration::Solution& solution, const io::Calibrat
         sigma > 0.0 && std::isfinite(sigma) ? std::clamp(2 - static_cast<int>(std::floor(std::log10(sigma))), 0, 9) : 3;
     std::printf("%-44s %14.*f %12.*f  %s\n", p.name.c_str(), decimals, value, decimals, sigma, p.unit.c_str());
   }
+  const ThermalErrors<double>& thermal = file.record.value.unit.thermal;
+  if (thermal.order() > 0)
+    std::printf("temperature: about %s degC, from %s to %s\n", figure(thermal.reference, 4).c_str(),
+                figure(thermal.lowest, 4).c_str(), figure(thermal.highest, 4).c_str());
   std::printf("gauge:");
   for (const std::string& g : file.gauge) std::printf(" %s", g.c_str());
   const FitFigures& fit = file.record.fit;

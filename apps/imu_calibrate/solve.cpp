@@ -35,11 +35,39 @@ void say(const calibration::ModelChoice& choice) {
       std::fprintf(stderr, "model: %s left out: %s\n", v.term.c_str(), v.why.substr(0, v.why.find('\n')).c_str());
       continue;
     }
+    if (!std::isfinite(v.gain)) {
+      std::fprintf(stderr, "model: %s %s: without it nothing fits\n", v.term.c_str(), v.taken ? "taken" : "left out");
+      continue;
+    }
     std::fprintf(stderr, "model: %s %s: chi-square %s less for %d entries, asked %s", v.term.c_str(),
                  v.taken ? "taken" : "left out", figure(v.gain, 4).c_str(), v.parameters, figure(v.asked, 3).c_str());
     std::fprintf(stderr, v.held_out_gain != 0.0 ? "; in windows held out %s less\n" : "\n",
                  figure(v.held_out_gain, 4).c_str());
   }
+}
+
+/// A polynomial of too low an order may hide in the chi-square of a million residuals: says so where the highest order
+/// explains more of it than chance would (theory, eq. 34).
+void look_for_higher_orders(const std::vector<calibration::TableRecording>& recordings, const Rig& rig,
+                            const io::RunFile& run, calibration::TableSolveOptions options,
+                            const calibration::Solution& solution) {
+  constexpr int kMost = ThermalErrors<double>::kMostOrder;
+  if (run.temperature == kMost) return;
+  options.terms.temperature = kMost;
+  const calibration::Solution higher = calibration::solve_table(recordings, rig, run.site, options);
+  const auto chi_square = [](const calibration::Solution& s) {
+    return s.record.fit.reduced_chi_square *
+           (6.0 * static_cast<double>(s.record.fit.windows) - static_cast<double>(s.x.size()));
+  };
+  const double gain = chi_square(solution) - chi_square(higher);
+  const double asked =
+      12.0 * (kMost - run.temperature) * std::log(6.0 * static_cast<double>(solution.record.fit.windows));
+  if (gain > asked)
+    std::fprintf(
+        stderr,
+        "temperature: %d is too low an order: the %dth lowers chi-square by %s, asked %s (--model auto finds the "
+        "order)\n",
+        run.temperature, kMost, figure(gain, 4).c_str(), figure(asked, 3).c_str());
 }
 
 calibration::Solution solve_on_table(const io::RunFile& run, RunInputs& inputs, std::vector<std::string>& mounts,
@@ -50,7 +78,12 @@ calibration::Solution solve_on_table(const io::RunFile& run, RunInputs& inputs, 
   calibration::TableSolveOptions options = table_options(run, mounts);
   ProgressLine progress;
   options.progress = [&](const std::string& stage) { progress.show(stage); };
-  if (!choose) return calibration::solve_table(recordings, rig.rig, run.site, options);
+  if (!choose) {
+    calibration::Solution solution = calibration::solve_table(recordings, rig.rig, run.site, options);
+    if (run.temperature > 0 && solution.observability.refused.empty())
+      look_for_higher_orders(recordings, rig.rig, run, options, solution);
+    return solution;
+  }
   calibration::ModelChoice choice = calibration::choose_model(recordings, rig.rig, run.site, options);
   say(choice);
   return std::move(choice.solution);

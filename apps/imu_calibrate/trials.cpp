@@ -297,6 +297,7 @@ Json conclude(const Json& all) {
   tree["seeds"] = seeds_of(all);
   // ours, that the others are held against: on the experiment, or on the log of the rate tests
   const std::string ours = figures_of(all, "experiment", "installation_deg").empty() ? "twelve_position" : "experiment";
+  tree["against"] = ours;
   for (const char* const method : comparison::kMethodNames) {
     Json one;
     int failures = 0;
@@ -383,8 +384,8 @@ Json conclude(const Json& all) {
 }
 
 void print(const Json& tree) {
-  std::printf("trials of seeds %s; 95 %% intervals of means by Student's t, paired t-tests against ours\n",
-              tree["seeds"].get<std::string>().c_str());
+  std::printf("trials of seeds %s; 95 %% intervals of means by Student's t; times and p (paired t-test): against %s\n",
+              tree["seeds"].get<std::string>().c_str(), tree["against"].get<std::string>().c_str());
   const std::vector<std::pair<const char*, const char*>> figures = {
       {"installation_deg", "installation, frame of the case [deg]"},
       {"aligned_deg", "cross-coupling, frame of the accelerometers [deg]"},

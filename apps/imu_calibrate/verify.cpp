@@ -76,6 +76,7 @@ ExitCode verify(const Options& o) {
       io::read_recording(run, files, both, digests, [&](double fraction) {
         progress.show("reading " + files.name() + " " + std::to_string(static_cast<int>(100.0 * fraction)) + " %");
       });
+      both.say_what_is_missing(file.record.value.unit, files.name());
       for (const auto& [path, digest] : digests) {
         for (const auto& [used, used_digest] : file.inputs) {
           if (digest == used_digest)

@@ -67,6 +67,7 @@ Corrector::Corrector(const CorrectorOptions& options) {
   } else {
     const InertialUnit<double> unit =
         io::unit_of(io::read_calibration_file(options.calibration), options.calibration, options.recording);
+    thermal_ = unit.thermal.order() > 0;
     si_.emplace(unit);
     if (!options.sheet.empty() && options.in_floating_point) {
       counts_.emplace(unit, scale);
@@ -120,30 +121,39 @@ const char* Corrector::path() const { return integers_ ? "integers" : counts_ ||
 
 InertialSample<double> Corrector::correct(std::int64_t utime, const InertialSample<double>& reading,
                                           double temperature) {
+  take_temperature(temperature);
   if (si_) {
-    si_->set_temperature(temperature);
+    si_->set_temperature(celsius_);
     return si_->correct(1e-6 * static_cast<double>(utime), reading);
   }
-  return wide(std::isfinite(temperature) ? si_float_->correct(narrow(reading), static_cast<float>(temperature))
-                                         : si_float_->correct(narrow(reading)));
+  return wide(std::isfinite(celsius_) ? si_float_->correct(narrow(reading), static_cast<float>(celsius_))
+                                      : si_float_->correct(narrow(reading)));
 }
 
 InertialSample<double> Corrector::correct(const io::ImuCounts& raw) {
-  const bool warm = raw.temperature != io::ImuCounts::kNoTemperature;
+  take_temperature(raw.celsius());
+  const bool warm = std::isfinite(celsius_);
   if (integers_) {
     CountCorrection correction(*integers_);
-    if (warm) correction.set_temperature(raw.temperature);
+    if (warm) correction.set_temperature(static_cast<std::int32_t>(std::lround(256.0 * celsius_)));
     const UnitOutput<std::int32_t> out = correction.correct_saturated(raw.counts);
     return {Vec3<double>(out[0], out[1], out[2]) * gyro_out_, Vec3<double>(out[3], out[4], out[5]) * accel_out_};
   }
   const auto& y = raw.counts;
   const InertialSample<double> reading{Vec3<double>(y[0], y[1], y[2]), Vec3<double>(y[3], y[4], y[5])};
   if (counts_) {
-    counts_->set_temperature(raw.celsius());
+    counts_->set_temperature(celsius_);
     return counts_->correct(1e-6 * static_cast<double>(raw.utime), reading);
   }
-  return wide(warm ? counts_float_->correct(narrow(reading), static_cast<float>(raw.celsius()))
+  return wide(warm ? counts_float_->correct(narrow(reading), static_cast<float>(celsius_))
                    : counts_float_->correct(narrow(reading)));
+}
+
+void Corrector::take_temperature(double celsius) {
+  if (std::isfinite(celsius))
+    celsius_ = celsius;
+  else if (thermal_)
+    ++without_temperature_;
 }
 
 CorrectedMessages::CorrectedMessages(const std::string& source, const io::LcmChannels& channels)

@@ -47,10 +47,13 @@ class Corrector {
 
   [[nodiscard]] bool takes_si() const { return si_.has_value() || si_float_.has_value(); }
   [[nodiscard]] bool takes_counts() const { return integers_ || counts_.has_value() || counts_float_.has_value(); }
+  /// Samples so far that stated no temperature, of a calibration that has terms of it.
+  [[nodiscard]] long long without_temperature() const { return without_temperature_; }
   /// For messages: how raw counts are corrected.
   [[nodiscard]] const char* path() const;
 
  private:
+  void take_temperature(double celsius);
   void read_block(const CorrectorOptions& options, const UnitScale<double>& scale);
 
   std::optional<StreamCorrection<double>> si_;
@@ -60,6 +63,9 @@ class Corrector {
   std::unique_ptr<CountCoefficients> integers_;
   double gyro_out_ = 1.0;  // SI of a count out
   double accel_out_ = 1.0;
+  bool thermal_ = false;
+  double celsius_ = std::numeric_limits<double>::quiet_NaN();  // the last that was stated
+  long long without_temperature_ = 0;
 };
 
 /// Messages of one channel, corrected.

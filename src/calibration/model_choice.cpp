@@ -56,6 +56,7 @@ struct Fit {
   std::optional<Solution> solution;
   double chi_square = kInfinity;
   std::string why;
+  ExitCode code = ExitCode::kNumerics;
 };
 
 Fit fit(const std::vector<TableRecording>& recordings, const Rig& rig, const Site& site,
@@ -64,8 +65,9 @@ Fit fit(const std::vector<TableRecording>& recordings, const Rig& rig, const Sit
   try {
     result.solution = solve_table(recordings, rig, site, options);
   } catch (const Error& e) {
-    if (e.code() != ExitCode::kNumerics) throw;
+    if (e.code() != ExitCode::kNumerics && e.code() != ExitCode::kInput) throw;
     result.why = e.what();
+    result.code = e.code();
     return result;
   }
   if (!result.solution->observability.refused.empty()) {
@@ -94,13 +96,13 @@ std::vector<TableRecording> part(const std::vector<TableRecording>& recordings, 
 
 /// Chi-square of windows that a fit has not seen.
 double unseen(const std::vector<TableRecording>& held_out, const Rig& rig, const Site& site,
-              const TableSolveOptions& options, const Solution& solution) {
+              const TableSolveOptions& options, const TemperatureRange& temperature, const Solution& solution) {
   double chi_square = 0.0;
   std::vector<int> mounts;
   mounts.reserve(held_out.size());
   for (const TableRecording& recording : held_out) mounts.push_back(recording.mount);
   LayoutRequest request = layout_request(options, rig, mounts, 1.0);
-  request.temperature = range_of(held_out);
+  request.temperature = temperature;
   const Layout layout(request);
   for (std::size_t r = 0; r < held_out.size(); ++r) {
     RecordingModel model(held_out[r], r, rig, site, layout, solution.record.value.clock_offset);
@@ -114,7 +116,9 @@ double unseen(const std::vector<TableRecording>& held_out, const Rig& rig, const
 
 ModelChoice choose_model(const std::vector<TableRecording>& all_recordings, const Rig& rig, const Site& site,
                          TableSolveOptions options) {
-  const bool has_temperature = range_of(all_recordings).is_known();
+  const TemperatureRange temperature = range_of(all_recordings);
+  const std::string without = why_no_temperature(all_recordings, temperature);
+  const bool has_temperature = without.empty();
   std::vector<TableRecording> with_temperature;
   if (has_temperature) {
     // models with and without terms of temperature are held against the same windows
@@ -122,7 +126,7 @@ ModelChoice choose_model(const std::vector<TableRecording>& all_recordings, cons
     for (TableRecording& recording : with_temperature) {
       auto& windows = recording.data.windows;
       windows.erase(std::remove_if(windows.begin(), windows.end(),
-                                   [](const ObservationWindow& w) { return !std::isfinite(w.temperature); }),
+                                   [&](const ObservationWindow& w) { return !temperature.holds(w.temperature); }),
                     windows.end());
     }
   }
@@ -130,6 +134,7 @@ ModelChoice choose_model(const std::vector<TableRecording>& all_recordings, cons
   const auto with_terms = [&](const ModelTerms& terms) {
     TableSolveOptions with = options;
     with.progress = nullptr;
+    with.even_temperatures = false;  // likelihoods of one and the same noise
     with.terms = terms;
     return with;
   };
@@ -137,6 +142,7 @@ ModelChoice choose_model(const std::vector<TableRecording>& all_recordings, cons
   choice.terms = {false, false};
   Fit best = fit(recordings, rig, site, with_terms(choice.terms));
   std::string last_why = best.why;
+  ExitCode last_code = best.code;
   const std::vector<TableRecording> seen = part(recordings, false);
   const std::vector<TableRecording> held_out = part(recordings, true);
   double residuals = 0.0;
@@ -160,6 +166,7 @@ ModelChoice choose_model(const std::vector<TableRecording>& all_recordings, cons
       verdict.why = one.why;
       if (!one.solution) {
         last_why = one.why;
+        last_code = one.code;
       } else {
         verdict.gain = best.solution ? best.chi_square - one.chi_square : kInfinity;
       }
@@ -180,13 +187,13 @@ ModelChoice choose_model(const std::vector<TableRecording>& all_recordings, cons
       choice.verdicts.insert(choice.verdicts.end(), others.begin(), others.end());
       break;
     }
-    const TableSolveOptions with = with_terms(next->terms);
-    const TableSolveOptions without = with_terms(choice.terms);
-    const Fit fit_with = fit(seen, rig, site, with);
-    const Fit fit_without = fit(seen, rig, site, without);
+    const TableSolveOptions options_with = with_terms(next->terms);
+    const TableSolveOptions options_without = with_terms(choice.terms);
+    const Fit fit_with = fit(seen, rig, site, options_with);
+    const Fit fit_without = fit(seen, rig, site, options_without);
     if (fit_with.solution && fit_without.solution)
-      next_verdict.held_out_gain = unseen(held_out, rig, site, without, *fit_without.solution) -
-                                   unseen(held_out, rig, site, with, *fit_with.solution);
+      next_verdict.held_out_gain = unseen(held_out, rig, site, options_without, temperature, *fit_without.solution) -
+                                   unseen(held_out, rig, site, options_with, temperature, *fit_with.solution);
     else
       next_verdict.held_out_gain = fit_with.solution ? kInfinity : -kInfinity;
     next_verdict.taken = next_verdict.held_out_gain > 0.0;
@@ -199,8 +206,12 @@ ModelChoice choose_model(const std::vector<TableRecording>& all_recordings, cons
       out.push_back(next->name);
     }
   }
-  if (!best.solution) throw Error(ExitCode::kNumerics, last_why);
-  choice.solution = std::move(*best.solution);
+  if (!best.solution) throw Error(last_code, last_why);
+  if (!has_temperature && temperature.is_known())
+    choice.verdicts.push_back({"temperature", false, 0, 0.0, 0.0, 0.0, without});
+  options.terms = choice.terms;
+  choice.solution =
+      choice.terms.temperature > 0 ? solve_table(recordings, rig, site, options) : std::move(*best.solution);
   return choice;
 }
 

@@ -76,6 +76,7 @@ Layout::Layout(const LayoutRequest& request) : refuse_above_(request.refuse_abov
   if (request.terms.temperature > 0) {
     thermal = size();
     thermal_order = request.terms.temperature;
+    temperature = request.temperature;
     const char* const kPower[] = {"", " squared", " cubed", " to the 4th", " to the 5th"};
     for (int k = 1; k <= thermal_order; ++k) {
       const int first = size();

@@ -85,7 +85,7 @@ Eigen::MatrixXd Predictor::information(std::size_t r, const PlannedMotion& motio
   window.samples = std::max(1, static_cast<int>(std::lround(kWindow * s.options.rate)));
   for (double t = kWindow; t <= motion.duration + 1e-9; t += kWindow) {
     window.t = t - window.half_width;
-    if (s.options.soak.is_known()) window.temperature = s.options.soak.at(window.t);
+    if (s.options.soak.is_known()) window.temperature = s.options.soak.at(motion.begin + window.t);
     recording.data.windows.push_back(window);
   }
   RecordingModel model(recording, r, s.rig, s.site, s.layout, s.options.solve.clock_offset);

@@ -136,7 +136,7 @@ void RecordingModel::refresh() {
     const double margin = data.windows[examined_].half_width + kWindowMargin;
     const double t = data.windows[examined_].t - first_offset_;
     if (t + margin > data.course.end()) break;  // the encoders are not there yet
-    if (layout_.thermal_order > 0 && !std::isfinite(data.windows[examined_].temperature)) continue;
+    if (layout_.thermal_order > 0 && !layout_.temperature.holds(data.windows[examined_].temperature)) continue;
     if (data.course.covers(t - margin, t + margin)) usable_.push_back(examined_);
   }
   inflation_.resize(usable_.size(), {1, 1, 1, 1, 1, 1});
@@ -316,11 +316,12 @@ void RecordingModel::advance(Pass<kRows>& pass, VisitRow&& visit) const {
       t = window.temperature - unit.thermal.reference;
     }
     const Mat3<double> at_place = in.of_place * unit.accel_place;  // a column an accelerometer
-    const Vec3<double> r_g = window.mean.w - (K_g * in.w + bias_g + unit.gyro.cubic.cwiseProduct(in.w3) +
-                                              unit.gyro.asymmetry.cwiseProduct(in.w_size) + unit.g_sensitivity * in.f);
+    const Vec3<double> r_g =
+        window.mean.w - (K_g * in.w + bias_g + unit.gyro.cubic.cwiseProduct(in.w3) +
+                         0.5 * unit.gyro.asymmetry.cwiseProduct(in.w_size) + unit.g_sensitivity * in.f);
     const Vec3<double> r_a =
         window.mean.f - (K_a * in.f + (K_a * at_place).diagonal() + bias_a + unit.accel.quadratic.cwiseProduct(in.f2) +
-                         unit.accel.asymmetry.cwiseProduct(in.f_size));
+                         0.5 * unit.accel.asymmetry.cwiseProduct(in.f_size));
     Shared dr_g;
     Shared dr_a;
     if constexpr (kWithRows) {
@@ -344,7 +345,7 @@ void RecordingModel::advance(Pass<kRows>& pass, VisitRow&& visit) const {
         v(kBias) = -1.0;
         v.template segment<3>(kMatrix) = gyro ? Vec3<double>(-in.w) : Vec3<double>(-(in.f + at_place.col(i)));
         v(kHigherOrder) = gyro ? -in.w3(i) : -in.f2(i);
-        v(kAsymmetry) = gyro ? -in.w_size(i) : -in.f_size(i);
+        v(kAsymmetry) = -0.5 * (gyro ? in.w_size(i) : in.f_size(i));
         v.template segment<3>(kForceRow) =
             gyro ? Vec3<double>(-in.f) : Vec3<double>(-(K_a.row(i) * in.of_place).transpose());
         v.template segment<kSharedPlaces>(kOwnPlaces) = gyro ? dr_g.row(i).transpose() : dr_a.row(i).transpose();
@@ -353,7 +354,7 @@ void RecordingModel::advance(Pass<kRows>& pass, VisitRow&& visit) const {
           for (int order = 0; order < kOrders; ++order) {
             power *= t;
             v(kThermalPlace + order) = -power;
-            v(kThermalPlace + kOrders + order) = gyro ? -power * in.w(i) : -power * in.f(i);
+            v(kThermalPlace + kOrders + order) = -power * (gyro ? in.w(i) : in.f(i) + at_place(i, i));
           }
         }
         constexpr int kResidual = Pass<kRows>::kRow - 1;

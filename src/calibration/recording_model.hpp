@@ -14,6 +14,7 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <numeric>
 #include <vector>
 
 #include "trunnion/calibration/parameters.hpp"
@@ -49,6 +50,10 @@ class RecordingModel {
 
   /// A weight for each window, rows and cost times it; empty: one.
   void set_weights(std::vector<float> weights) { weights_ = std::move(weights); }
+  /// Of all windows: their number where there are no weights.
+  [[nodiscard]] double total_weight() const {
+    return weights_.empty() ? static_cast<double>(windows()) : std::accumulate(weights_.begin(), weights_.end(), 0.0);
+  }
 
   /// Sum of the squared innovations, weighted. With @p normal also adds J^T J, J^T r and r^T r over (unknowns,
   /// residual). @param power of the weights: 2 for the covariance of a weighted sum

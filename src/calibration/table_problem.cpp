@@ -27,7 +27,10 @@ constexpr std::size_t kTemperatureBins = 20;
 constexpr double kMostWeight = 16.0;
 constexpr double kMostBlind = 0.1;   // of the windows, without a temperature
 constexpr double kLeastRange = 1.0;  // K
-constexpr double kNoiseStep = 1.0;   // s, of the residual series that the wander is estimated from
+constexpr double kStrayTemperatures = 0.002;
+constexpr double kColdest = -100.0;  // degC
+constexpr double kHottest = 300.0;
+constexpr double kNoiseStep = 1.0;  // s, of the residual series that the wander is estimated from
 
 /// One recording as one block of the Ceres problem, in square-root information form: n + 1 residuals stand for all its
 /// windows, with the same cost, gradient and J^T J, at a thousandth of the rows.
@@ -95,6 +98,16 @@ class PriorCost final : public ceres::CostFunction {
   double scale_;
 };
 
+/// Of a symmetric matrix, by way of units in which its diagonal is one.
+Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& matrix, const std::vector<Parameter>& parameters) {
+  Eigen::VectorXd unit(matrix.rows());
+  for (Eigen::Index i = 0; i < unit.size(); ++i)
+    unit(i) = matrix(i, i) > 0.0 ? 1.0 / std::sqrt(matrix(i, i)) : 1.0 / parameters[static_cast<std::size_t>(i)].scale;
+  const Eigen::MatrixXd scaled = unit.asDiagonal() * matrix * unit.asDiagonal();
+  const Eigen::MatrixXd inverse = scaled.ldlt().solve(Eigen::MatrixXd::Identity(matrix.rows(), matrix.cols()));
+  return unit.asDiagonal() * (0.5 * (inverse + inverse.transpose())) * unit.asDiagonal();
+}
+
 }  // namespace
 
 TableProblem::TableProblem(const std::vector<TableRecording>& recordings, const Rig& rig, const Site& site,
@@ -127,7 +140,7 @@ TableProblem::TableProblem(const std::vector<TableRecording>& recordings, const 
                                         " times as fast as the encoders: wrong unit or nominal scale of one of them");
     }
   }
-  if (layout_.thermal_order > 0) weigh_evenly();
+  if (weighted()) weigh_evenly();
   priors_.push_back(gravity_prior(layout_, site));
   if (running) add_wide_priors();
 }
@@ -215,7 +228,7 @@ void TableProblem::weigh_evenly() {
   std::array<double, kTemperatureBins> count{};
   const auto bin = [&](double celsius) {
     const double at = (celsius - temperature_.lowest) / (temperature_.highest - temperature_.lowest);
-    return std::min(static_cast<std::size_t>(kTemperatureBins * at), kTemperatureBins - 1);
+    return std::min(static_cast<std::size_t>(kTemperatureBins * std::max(at, 0.0)), kTemperatureBins - 1);
   };
   double windows = 0.0;
   for (const auto& model : models_) {
@@ -238,15 +251,41 @@ void TableProblem::weigh_evenly() {
 }
 
 TemperatureRange range_of(const std::vector<TableRecording>& recordings) {
-  TemperatureRange range;
+  std::vector<double> all;
   for (const TableRecording& recording : recordings) {
     for (const ObservationWindow& window : recording.data.windows) {
-      if (!std::isfinite(window.temperature)) continue;
-      range.lowest = range.is_known() ? std::min(range.lowest, window.temperature) : window.temperature;
-      range.highest = range.is_known() ? std::max(range.highest, window.temperature) : window.temperature;
+      if (std::isfinite(window.temperature)) all.push_back(window.temperature);
     }
   }
+  if (all.empty()) return {};
+  const auto left_out = static_cast<std::ptrdiff_t>(kStrayTemperatures * static_cast<double>(all.size()));
+  TemperatureRange range;
+  std::nth_element(all.begin(), all.begin() + left_out, all.end());
+  range.lowest = all[static_cast<std::size_t>(left_out)];
+  std::nth_element(all.begin(), all.end() - 1 - left_out, all.end());
+  range.highest = *(all.end() - 1 - left_out);
   return range;
+}
+
+std::string why_no_temperature(const std::vector<TableRecording>& recordings, const TemperatureRange& range) {
+  for (const TableRecording& recording : recordings) {
+    const auto& windows = recording.data.windows;
+    const auto blind = std::count_if(windows.begin(), windows.end(),
+                                     [&](const ObservationWindow& w) { return !range.holds(w.temperature); });
+    if (static_cast<double>(blind) > kMostBlind * static_cast<double>(windows.size()))
+      return recording.data.name + ": states no temperature" +
+             (blind < static_cast<std::ptrdiff_t>(windows.size()) ? " for part of its time" : "");
+  }
+  char text[120];
+  if (range.lowest < kColdest || range.highest > kHottest) {
+    std::snprintf(text, sizeof text, "the temperatures are from %.1f to %.1f degC: are they in another unit?",
+                  range.lowest, range.highest);
+    return text;
+  }
+  if (range.highest - range.lowest > kLeastRange) return {};
+  std::snprintf(text, sizeof text, "the temperature moves by %.2f K: too little to see what it does",
+                range.highest - range.lowest);
+  return text;
 }
 
 LayoutRequest TableProblem::request() const {
@@ -258,19 +297,8 @@ LayoutRequest TableProblem::request() const {
       largest_rate = std::max(largest_rate, window.mean.w.cwiseAbs().maxCoeff());
   }
   if (options_.terms.temperature > 0) {
-    for (const TableRecording& recording : recordings_) {
-      const auto& windows = recording.data.windows;
-      const auto blind = std::count_if(windows.begin(), windows.end(),
-                                       [](const ObservationWindow& w) { return !std::isfinite(w.temperature); });
-      if (static_cast<double>(blind) > kMostBlind * static_cast<double>(windows.size()))
-        throw Error(ExitCode::kInput, recording.data.name + ": states no temperature" +
-                                          (blind < static_cast<long>(windows.size()) ? " for part of its time" : "") +
-                                          ": the model's temperature needs one");
-    }
-    if (!(temperature_.highest - temperature_.lowest > kLeastRange))
-      throw Error(ExitCode::kInput, "the recordings' temperature moves by " +
-                                        std::to_string(temperature_.highest - temperature_.lowest) +
-                                        " K: too little for the model's temperature");
+    const std::string why = why_no_temperature(recordings_, temperature_);
+    if (!why.empty()) throw Error(ExitCode::kInput, why + " (model: temperature)");
   }
   LayoutRequest request = layout_request(options_, rig_, mounts, largest_rate);
   request.temperature = temperature_;
@@ -442,7 +470,9 @@ void TableProblem::hold_against_the_data(Observability& observability, const Fit
         ExitCode::kNumerics,
         "the data do not fit the model: reduced chi-square " + std::to_string(worst.chi_square) + " in " + worst.name +
             ". Look at the mount of each recording, the signs and units of the encoders and a stated clock offset; "
-            "then: the unit is noisier than its sheet (leave the sheet out), its clock drifts, or the encoders fail");
+            "then: the unit is noisier than its sheet (leave the sheet out), its clock drifts, the encoders fail, or "
+            "the "
+            "model lacks a term (solve --model auto looks for it)");
   }
   if (chi_square > 1.0) observability.covariance *= chi_square;
 }
@@ -458,10 +488,10 @@ Solution TableProblem::conclude(const UnitNoise& noise, int iterations) {
     Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(n + 1, n + 1);
     model->evaluate(start_, &normal);
     information += normal.topLeftCorner(n, n);
-    if (layout_.thermal_order > 0) model->evaluate(start_, &squared, 2);
+    if (weighted()) model->evaluate(start_, &squared, 2);
     cost += normal(n, n);
     rows += 6.0 * static_cast<double>(model->windows());
-    const double chi_square = normal(n, n) / (6.0 * static_cast<double>(model->windows()));
+    const double chi_square = normal(n, n) / (6.0 * model->total_weight());
     if (chi_square > worst.chi_square) worst = {chi_square, recordings_[model->index()].data.name};
   }
   const double freedom = std::max(1.0, rows - n);
@@ -471,6 +501,13 @@ Solution TableProblem::conclude(const UnitNoise& noise, int iterations) {
   solution.parameters = layout_.parameters;
   layout_.write(start_, solution.x);
   solution.observability = judge(information, layout_.parameters);
+  if (weighted() && solution.observability.refused.empty()) {
+    Eigen::MatrixXd middle = squared.topLeftCorner(n, n);
+    add_prior_information(layout_, priors_, middle);
+    const Eigen::MatrixXd& C = solution.observability.covariance;
+    // the information that a weighted estimate has: the gate and the covariance are of that
+    solution.observability = judge(inverse_of(C * middle * C, layout_.parameters), layout_.parameters);
+  }
   if (solution.observability.refused.empty()) {
     const std::string beyond = converged_ ? implausible(solution.parameters, solution.x) : std::string();
     if (!beyond.empty()) {
@@ -479,12 +516,6 @@ Solution TableProblem::conclude(const UnitNoise& noise, int iterations) {
                   "mount of each recording, the zeros, signs and units of the encoders:\n" +
                       beyond);
     }
-    if (layout_.thermal_order > 0) {
-      Eigen::MatrixXd middle = squared.topLeftCorner(n, n);
-      add_prior_information(layout_, priors_, middle);
-      const Eigen::MatrixXd& C = solution.observability.covariance;
-      solution.observability.covariance = C * middle * C;
-    }
     hold_against_the_data(solution.observability, worst, cost / freedom);
   }
   solution.noise = noise;
@@ -492,8 +523,15 @@ Solution TableProblem::conclude(const UnitNoise& noise, int iterations) {
   CalibrationRecord& record = solution.record;
   record.value = start_;
   if (layout_.thermal_order > 0) {
-    record.value.unit.thermal.lowest = temperature_.lowest;
-    record.value.unit.thermal.highest = temperature_.highest;
+    ThermalErrors<double>& thermal = record.value.unit.thermal;
+    thermal.lowest = temperature_.highest;
+    thermal.highest = temperature_.lowest;
+    for (const auto& model : models_) {
+      for (std::size_t k = 0; k < model->windows(); ++k) {
+        thermal.lowest = std::min(thermal.lowest, model->window(k).temperature);
+        thermal.highest = std::max(thermal.highest, model->window(k).temperature);
+      }
+    }
   }
   record.value.rig.heading = std::remainder(record.value.rig.heading, 2.0 * kPi);
   record.sigma = layout_.sigmas(solution.observability.covariance);

@@ -27,8 +27,11 @@ struct Prior {
 LayoutRequest layout_request(const TableSolveOptions& options, const Rig& rig, const std::vector<int>& mounts,
                              double largest_rate);
 
-/// Of the windows.
+/// Of the windows, but for the hottest and the coldest two in a thousand: one wrong reading makes no range.
 TemperatureRange range_of(const std::vector<TableRecording>& recordings);
+
+/// Why these recordings cannot have terms of temperature; empty where they can.
+std::string why_no_temperature(const std::vector<TableRecording>& recordings, const TemperatureRange& range);
 
 Prior gravity_prior(const Layout& layout, const Site& site);
 
@@ -64,6 +67,7 @@ class TableProblem {
   [[nodiscard]] LayoutRequest request() const;
   static std::string span(const TableRecording& recording);
   void say(const char* stage) const;
+  [[nodiscard]] bool weighted() const { return layout_.thermal_order > 0 && options_.even_temperatures; }
   void weigh_evenly();
   void set_noise(const UnitNoise& noise);
   void set_stride(std::size_t stride);

@@ -180,7 +180,11 @@ void read_triads(const StrictYaml& root, bool sigma, InertialUnit<double>& unit)
   const StrictYaml accel = root.at("accelerometer");
   accel.only({"bias_m_s2", "matrix", "quadratic_s2_m", "asymmetry", "place_m"});
   if (accel.has("asymmetry")) unit.accel.asymmetry = accel.at("asymmetry").vector(scalar);
-  if (accel.has("place_m")) unit.accel_place = accel.at("place_m").matrix(scalar).transpose();
+  if (accel.has("place_m")) {
+    unit.accel_place = accel.at("place_m").matrix(scalar).transpose();
+    if (!sigma && !unit.accel_place.col(0).isZero(0.0))
+      accel.at("place_m").fail("the first row should be zeros: the sensing point is where x is");
+  }
   unit.accel.bias = accel.at("bias_m_s2").vector(scalar);
   unit.accel.M = matrix(accel.at("matrix"));
   if (accel.has("quadratic_s2_m")) unit.accel.quadratic = accel.at("quadratic_s2_m").vector(scalar);

@@ -40,6 +40,7 @@ constexpr std::array<Unit, 1> kNumberUnits = {{{"", "", 1.0}}};
 constexpr double kLargestReading = 1e6;  // rad/s, m/s^2, rad
 constexpr const char* kCounts = "counts";
 constexpr const char* kTemperature = "temperature";
+constexpr double kHottest = 1000.0;  // degC
 constexpr std::array<const char*, 6> kSensors = {"gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z"};
 
 struct Units {
@@ -70,6 +71,7 @@ struct Column {
   double si = 1.0;
   double zero = 0.0;
   double largest = std::numeric_limits<double>::infinity();
+  bool optional = false;  // what is no number there is not known
 };
 
 bool starts_number(const char* p, const char* end) {
@@ -118,8 +120,10 @@ class Table {
         column.si = unit_in_si(quantity, unit);
       }
       if (quantity != "t") column.largest = kLargestReading;
+      column.optional = quantity == kTemperature;
       columns_.push_back(column);
       last_ = std::max(last_, column.index);
+      if (!column.optional) needed_ = std::max(needed_, column.index);
     }
     cells_.resize(last_ + 1);
   }
@@ -145,7 +149,9 @@ class Table {
       }
       if (!number || std::string_view(p, static_cast<std::size_t>(cell_end - p)).find_first_not_of(" \t") !=
                          std::string_view::npos) {
-        if (const Column* column = column_at(found)) {
+        const Column* const column = column_at(found);
+        cells_[found] = std::nan("");
+        if (column != nullptr && !column->optional) {
           throw input_error(path_, line_, column->quantity,
                             "should be a number, is '" + std::string(number ? from : p, cell_end) + "'");
         }
@@ -153,13 +159,18 @@ class Table {
       p = cell_end;
       if (p != end_ && *p == separator_ && separator_ != ' ') ++p;
     }
-    if (found <= last_) {
+    if (found <= needed_) {
       throw input_error(
           path_, line_, "",
-          "row too short: " + std::to_string(found) + " columns, " + std::to_string(last_ + 1) + " needed");
+          "row too short: " + std::to_string(found) + " columns, " + std::to_string(needed_ + 1) + " needed");
     }
+    for (; found <= last_; ++found) cells_[found] = std::nan("");
     for (std::size_t i = 0; i < columns_.size(); ++i) {
       const double cell = cells_[columns_[i].index];
+      if (columns_[i].optional && !(std::abs(cell) < kHottest)) {
+        value[i] = std::nan("");
+        continue;
+      }
       if (!std::isfinite(cell)) throw input_error(path_, line_, columns_[i].quantity, "is not finite");
       value[i] = (cell - columns_[i].zero) * columns_[i].si;
       if (std::abs(value[i]) > columns_[i].largest) {
@@ -260,6 +271,7 @@ class Table {
   std::vector<Column> columns_;
   std::vector<double> cells_;
   std::size_t last_ = 0;
+  std::size_t needed_ = 0;
   long long line_ = 0;
 };
 
@@ -304,7 +316,7 @@ void read_imu_csv(const std::string& path, const ColumnMap& columns, const Senso
   table.choose(quantities, columns, sheet);
   std::array<double, 8> v{};
   while (table.row(v.data())) {
-    if (has_temperature) sink.temperature(v[7]);
+    if (has_temperature && std::isfinite(v[7])) sink.temperature(v[7]);  // a slow thermometer leaves cells empty
     sink.imu(to_utime(v[0], table), {Vec3<double>(v[1], v[2], v[3]), Vec3<double>(v[4], v[5], v[6])});
   }
 }

@@ -27,6 +27,9 @@ constexpr double kTolerableDamage = 1e-3;   // messages that cannot be decoded, 
 constexpr double kLargestReading = 1e6;     // rad/s, m/s^2
 constexpr double kColdest = -273.15;        // degC
 constexpr double kHottest = 1000.0;
+/// What is no temperature is not known.
+double known_temperature(double celsius) { return celsius > kColdest && celsius < kHottest ? celsius : std::nan(""); }
+
 constexpr double kLargestAngle = 1e7;  // rad
 
 }  // namespace
@@ -121,12 +124,12 @@ void LcmDecoder::deliver(const LcmEvent& event, std::int64_t utime, const Inerti
   sink_.imu(utime, sample);
 }
 
-/// What is no temperature is not known.
 void LcmDecoder::tell_temperature(double celsius) {
-  const bool known = celsius > kColdest && celsius < kHottest;
+  celsius = known_temperature(celsius);
+  const bool known = std::isfinite(celsius);
   if (!known && !told_temperature_) return;
   told_temperature_ = known;
-  sink_.temperature(known ? celsius : std::nan(""));
+  sink_.temperature(celsius);
 }
 
 /// Names the number that is none, or beyond any sensor.
@@ -271,6 +274,8 @@ void encode_imu_counts(const ImuCounts& sample, std::string& out) {
   for (const std::int32_t count : sample.counts) append_unsigned(out, static_cast<std::uint32_t>(count));
   append_unsigned(out, static_cast<std::uint32_t>(sample.temperature));
 }
+
+double ImuCounts::celsius() const { return known_temperature(temperature / 256.0); }  // kNoTemperature is none
 
 std::optional<ImuCounts> decode_imu_counts(std::string_view message) {
   const char* p = message.data();

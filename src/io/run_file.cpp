@@ -89,6 +89,7 @@ void read_term(const StrictYaml& node, RunFile& run) {
     const long long n = order.integer();
     if (n < 1 || n > ThermalErrors<double>::kMostOrder)
       order.fail("should be an order from 1 to " + std::to_string(ThermalErrors<double>::kMostOrder));
+    if (run.temperature > 0) node.fail("stands there twice");
     run.temperature = static_cast<int>(n);
     return;
   }

@@ -27,6 +27,7 @@ constexpr double kPower = 8.0;      // of eq. (1)
 constexpr double kRestTime = 10.0;  // s, of a block
 constexpr double kTurnTime = 20.0;
 constexpr double kSwingShare = 0.98;  // of the room that the joint leaves
+constexpr double kForgotten = 4.0;    // correlation times
 constexpr int kMostSweeps = 2;
 constexpr int kMostLonger = 12;    // times that a transition is made longer
 constexpr double kWorthIt = 1e-3;  // relative decrease of the cost
@@ -162,7 +163,12 @@ PlannedMotion motion_of(const TableSequence& sequence, const TableLimits& limits
   return {[motion](double t) {
             return std::array<double, 2>{motion.azimuth.angle(t), motion.pitch.angle(t)};
           },
-          motion.duration};
+          motion.duration, 0.0};
+}
+
+/// What is left of a motion from @p from [s] on.
+PlannedMotion after(const PlannedMotion& motion, double from) {
+  return {[motion, from](double t) { return motion.angles(from + t); }, motion.duration - from, from};
 }
 
 double largest_rate_of(const TableSequence& sequence) {
@@ -419,6 +425,12 @@ Plan predict(const Bench& bench, const std::vector<TableSequence>& recordings) {
   return {recordings, predictor.parameters(), predictor.conclude(information), information};
 }
 
+double largest_rate_of(const Plan& plan) {
+  double largest = 0.0;
+  for (const TableSequence& sequence : plan.recordings) largest = std::max(largest, largest_rate_of(sequence));
+  return largest;
+}
+
 WantedSigmas sigmas_of(const Plan& plan) {
   WantedSigmas largest = nothing_wanted();
   for (std::size_t i = 0; i < plan.parameters.size(); ++i) {
@@ -453,9 +465,7 @@ Plan search(const Bench& bench, const WantedSigmas& wanted, double time, double 
 }
 
 Addition cheapest_addition(const Bench& bench, const Plan& plan, const WantedSigmas& wanted) {
-  double largest_rate = 0.0;
-  for (const TableSequence& sequence : plan.recordings)
-    largest_rate = std::max(largest_rate, largest_rate_of(sequence));
+  const double largest_rate = largest_rate_of(plan);
   const Predictor predictor = predictor_of(bench, largest_rate);
   const auto n = static_cast<Eigen::Index>(plan.parameters.size());
   Eigen::VectorXd asked(n);
@@ -469,26 +479,40 @@ Addition cheapest_addition(const Bench& bench, const Plan& plan, const WantedSig
   }
   Addition best;
   best.cost_before = cost_of(predictor.sigmas(plan.information), asked);
-  double fastest = 0.0;
+  std::vector<Addition> additions;
+  std::vector<TableSequence> longer;
   for (std::size_t r = 0; r < plan.recordings.size(); ++r) {
     for (const Block& block : candidates(bench)) {
       if (largest_rate_of(sequence_of(bench, {block})) > 1.01 * largest_rate) continue;  // the nonlinearity's scale
-      // on its own, from where the plan ends: information is a sum, but for what the wander carries over
-      Stand angle = end_of(plan.recordings[r]);
-      TableSequence addition = {
-          {0.0, 1.0, {AxisCommand{angle[0], 0.0, 0.0, 0.0}, AxisCommand{angle[1], 0.0, 0.0, 0.0}}}};
-      append(bench, block, angle, addition);
-      const double seconds = simulation::duration_of(addition);
-      const double cost = cost_of(
-          predictor.sigmas(plan.information + predictor.information(r, motion_of(addition, bench.limits))), asked);
-      const double speed = std::log(best.cost_before / cost) / seconds;
-      if (!(speed > fastest)) continue;
-      fastest = speed;
-      best.what = words(block);
-      best.recording = r;
-      best.seconds = seconds;
-      best.cost_after = cost;
+      longer.push_back(plan.recordings[r]);
+      Stand angle = end_of(longer.back());
+      append(bench, block, angle, longer.back());
+      additions.push_back({words(block), r,
+                           simulation::duration_of(longer.back()) - simulation::duration_of(plan.recordings[r]),
+                           best.cost_before, kInfinity});
     }
+  }
+  // the wander carries over from what was before, but not from long before: the end of a recording stands for it
+  const UnitNoise& noise = bench.prediction.solve.noise;
+  const double memory = kForgotten * std::max(noise.gyro.wander_correlation_time, noise.accel.wander_correlation_time);
+  std::vector<Eigen::MatrixXd> end(plan.recordings.size());
+  const auto end_from = [&](std::size_t r) {
+    return std::max(0.0, simulation::duration_of(plan.recordings[r]) - memory);
+  };
+  calibration::share_out(end.size(), [&](std::size_t r) {
+    end[r] = predictor.information(r, after(motion_of(plan.recordings[r], bench.limits), end_from(r)));
+  });
+  calibration::share_out(additions.size(), [&](std::size_t i) {
+    const std::size_t r = additions[i].recording;
+    const Eigen::MatrixXd with = predictor.information(r, after(motion_of(longer[i], bench.limits), end_from(r)));
+    additions[i].cost_after = cost_of(predictor.sigmas(plan.information + with - end[r]), asked);
+  });
+  double fastest = 0.0;
+  for (const Addition& addition : additions) {
+    const double speed = std::log(addition.cost_before / addition.cost_after) / addition.seconds;
+    if (!(speed > fastest)) continue;
+    fastest = speed;
+    best = addition;
   }
   return best;
 }

@@ -33,7 +33,11 @@ struct TemperatureRange {
   double lowest = std::numeric_limits<double>::quiet_NaN();
   double highest = std::numeric_limits<double>::quiet_NaN();
 
+  /// Beyond the range by more than this a reading is the thermometer's mistake [K].
+  static constexpr double kMargin = 0.5;
+
   [[nodiscard]] bool is_known() const { return lowest <= highest; }
+  [[nodiscard]] bool holds(double celsius) const { return celsius >= lowest - kMargin && celsius <= highest + kMargin; }
   /// T_0: the middle, in whole degrees.
   [[nodiscard]] double reference() const { return std::round(0.5 * (lowest + highest)); }
   /// From T_0 to the farther end [K].
@@ -70,7 +74,8 @@ struct Layout {
   int accel_place = -1;  ///< six: of y, of z
   int thermal = -1;      ///< for each order: biases of gyros and accelerometers, then their scales
   int thermal_order = 0;
-  int tilt = -1;  ///< two
+  TemperatureRange temperature;  ///< of the windows that are used
+  int tilt = -1;                 ///< two
   int heading = -1;
   int nonorthogonality = -1;
   int eccentricity = -1;         ///< four: azimuth c, s, pitch c, s

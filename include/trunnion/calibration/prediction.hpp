@@ -30,6 +30,7 @@ namespace trunnion::calibration {
 struct PlannedMotion {
   std::function<std::array<double, 2>(double t)> angles;
   double duration = 0.0;  ///< s
+  double begin = 0.0;     ///< s, of this motion in its recording: what a soak has reached then
 };
 
 struct PredictionOptions {

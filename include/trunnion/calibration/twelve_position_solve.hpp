@@ -30,6 +30,7 @@ namespace trunnion::calibration {
 struct TableSolveOptions {
   ModelTerms terms;
   EntryLimits refuse_above = default_refuse_above();
+  bool even_temperatures = true;  ///< with terms of temperature: every part of its range has the same weight
   bool bias_per_recording = true;
   bool estimate_clock_offset = true;
   double clock_offset = 0.0;             ///< s, where it is not estimated

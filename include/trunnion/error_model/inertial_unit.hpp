@@ -147,7 +147,7 @@ class UnitCorrection {
   /// Of one triad's nonlinearity.
   struct Bend {
     kernel::Matrix<T> A;
-    kernel::Triple<T> asymmetry, quadratic, cubic;
+    kernel::Triple<T> half_asymmetry, quadratic, cubic;
   };
   /// Plain numbers, as a flash block or a generated header holds them.
   struct Coefficients {
@@ -212,7 +212,7 @@ class UnitCorrection {
   }
   template <class U>
   static Bend bend(const Mat3<U>& A, const Triad<U>& triad) {
-    return {kernel::matrix<T>(A.template cast<T>()), kernel::triple<T>(triad.asymmetry.template cast<T>()),
+    return {kernel::matrix<T>(A.template cast<T>()), kernel::triple<T>((U(0.5) * triad.asymmetry).template cast<T>()),
             kernel::triple<T>(triad.quadratic.template cast<T>()), kernel::triple<T>(triad.cubic.template cast<T>())};
   }
 
@@ -227,12 +227,12 @@ class UnitCorrection {
   static Triple straightened(const Triple& linear, const Bend& bend) {
     Triple u = linear;
     for (int step = 0; step < Triad<T>::kCorrectionSteps; ++step) {
-      const auto n_of = [](const T& x, const T& asymmetry, const T& quadratic, const T& cubic) {
-        return (x < T(0) ? -x : x) * asymmetry + x * x * (quadratic + cubic * x);
+      const auto n_of = [](const T& x, const T& half_asymmetry, const T& quadratic, const T& cubic) {
+        return (x < T(0) ? -x : x) * half_asymmetry + x * x * (quadratic + cubic * x);
       };
-      const Triple n = {n_of(u.x, bend.asymmetry.x, bend.quadratic.x, bend.cubic.x),
-                        n_of(u.y, bend.asymmetry.y, bend.quadratic.y, bend.cubic.y),
-                        n_of(u.z, bend.asymmetry.z, bend.quadratic.z, bend.cubic.z)};
+      const Triple n = {n_of(u.x, bend.half_asymmetry.x, bend.quadratic.x, bend.cubic.x),
+                        n_of(u.y, bend.half_asymmetry.y, bend.quadratic.y, bend.cubic.y),
+                        n_of(u.z, bend.half_asymmetry.z, bend.quadratic.z, bend.cubic.z)};
       u = linear - bend.A * n;
     }
     return u;

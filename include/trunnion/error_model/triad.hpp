@@ -3,14 +3,14 @@
 /// @file
 /// Deterministic errors of three orthogonal sensors of one kind.
 ///
-///   measured = (I + M) u + b + n(u),   n(u) = A |u| + Q u^o2 + N u^o3              ... (1)
+///   measured = (I + M) u + b + n(u),   n(u) = A |u| / 2 + Q u^o2 + N u^o3          ... (1)
 ///   u        = (I + M)^-1 (measured - b - n(u))                                    ... (2)  solved by iteration
 ///   I + M    = (I + S) T R                                                         ... (3)
 ///
 /// u: the true angular rate w_ib_b [rad/s] or specific force f_b [m/s^2]. b: bias [unit of u]. M: scale errors on the
-/// diagonal [-], cross-coupling off it [rad]. A: asymmetry, half the scale of positive inputs less that of negative
-/// ones [-]; Q [1/u], N [1/u^2]: second- and third-order scale-factor nonlinearity; one coefficient an axis, |.|, ^o2
-/// and ^o3 are element by element. S: scale; T: non-orthogonality, lower triangular with
+/// diagonal [-], cross-coupling off it [rad]. A: asymmetry, the scale of positive inputs less that of negative ones
+/// over their mean [-] (IEEE Std 528); Q [1/u], N [1/u^2]: second- and third-order scale-factor nonlinearity; one
+/// coefficient an axis, |.|, ^o2 and ^o3 are element by element. S: scale; T: non-orthogonality, lower triangular with
 /// rows of unit length; R: rotation from the case to the first sensitive axis and the plane of the first two.
 /// Zero parameters are the perfect instrument. IEEE Std 1554-2005, 1293-2018; docs/theory/calibration.md, eq. 1-3.
 
@@ -49,7 +49,7 @@ struct Triad {
 
   /// n(u) of eq. (1).
   [[nodiscard]] Vec3<T> nonlinearity(const Vec3<T>& u) const {
-    return (u.array().abs() * asymmetry.array() +
+    return (T(0.5) * u.array().abs() * asymmetry.array() +
             u.array() * u.array() * (quadratic.array() + cubic.array() * u.array()))
         .matrix();
   }

@@ -127,10 +127,8 @@ struct ImuCounts {
   std::int32_t temperature = 0;  ///< 1/256 degC, or kNoTemperature
 
   static constexpr std::int32_t kNoTemperature = std::numeric_limits<std::int32_t>::min();
-  /// degC; not a number where it is not measured
-  [[nodiscard]] double celsius() const {
-    return temperature == kNoTemperature ? std::numeric_limits<double>::quiet_NaN() : temperature / 256.0;
-  }
+  /// degC; not a number where it is not measured, or is none
+  [[nodiscard]] double celsius() const;
 };
 /// @return nothing for a message of another type
 std::optional<ImuCounts> decode_imu_counts(std::string_view message);

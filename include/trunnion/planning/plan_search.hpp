@@ -53,6 +53,9 @@ struct Plan {
 /// Predicts what these sequences tell.
 Plan predict(const Bench& bench, const std::vector<TableSequence>& recordings);
 
+/// Of all its moves [rad/s].
+double largest_rate_of(const Plan& plan);
+
 /// Largest sigma of each kind of a plan: what another is to reach.
 WantedSigmas sigmas_of(const Plan& plan);
 

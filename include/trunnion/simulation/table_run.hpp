@@ -40,7 +40,7 @@ struct TableRunSettings {
   double accel_bias, accel_turn_on_bias;   ///< m/s^2
   double accel_scale, accel_cross_coupling;
   double accel_quadratic = 0.0;  ///< s^2/m
-  double gyro_asymmetry = 0.0, accel_asymmetry = 0.0;
+  double gyro_asymmetry = 0.0, accel_asymmetry = 0.0;  ///< -
   double accel_place = 0.0;  ///< m, a component
 
   double tilt, nonorthogonality, mount_error, eccentricity;  ///< rad
