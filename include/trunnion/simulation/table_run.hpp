@@ -39,9 +39,9 @@ struct TableRunSettings {
   double gyro_g_sensitivity;               ///< (rad/s)/(m/s^2)
   double accel_bias, accel_turn_on_bias;   ///< m/s^2
   double accel_scale, accel_cross_coupling;
-  double accel_quadratic = 0.0;  ///< s^2/m
+  double accel_quadratic = 0.0;                        ///< s^2/m
   double gyro_asymmetry = 0.0, accel_asymmetry = 0.0;  ///< -
-  double accel_place = 0.0;  ///< m, a component
+  double accel_place = 0.0;                            ///< m, a component
 
   double tilt, nonorthogonality, mount_error, eccentricity;  ///< rad
   double lever_arm;                                          ///< m, length; direction at random in each mount
