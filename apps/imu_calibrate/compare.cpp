@@ -42,8 +42,10 @@ std::vector<Difference> differences(const io::CalibrationFile& a, const io::Cali
   constexpr double kDeg = 1.0 / kRadPerDeg;
   constexpr double kMicroG = 1.0 / kMetresPerS2PerMicroG;
   constexpr const char* kName[3] = {"x", "y", "z"};
-  const auto& [va, sa] = std::tie(a.record.value, a.record.sigma);
-  const auto& [vb, sb] = std::tie(b.record.value, b.record.sigma);
+  const CalibrationValues& va = a.record.value;
+  const CalibrationValues& sa = a.record.sigma;
+  const CalibrationValues& vb = b.record.value;
+  const CalibrationValues& sb = b.record.sigma;
   const auto vector = [&](const std::string& entry, const Vec3<double>& x, const Vec3<double>& y,
                           const Vec3<double>& sx, const Vec3<double>& sy, const char* unit, double in_unit) {
     for (int i = 0; i < 3; ++i) add(entry + " " + kName[i], x(i), y(i), sx(i), sy(i), unit, in_unit);
