@@ -117,7 +117,7 @@ std::string in_comment(const std::string& name) {
   return text;
 }
 
-/// What UnitCorrection does not carry: the unit itself, for ThermalCorrection.
+/// What UnitCorrection does not carry: the unit itself, for StreamCorrection.
 std::string unit_of_header(const InertialUnit<double>& unit, const UnitScale<double>& scale) {
   std::string out;
   out +=

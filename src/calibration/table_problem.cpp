@@ -471,8 +471,7 @@ void TableProblem::hold_against_the_data(Observability& observability, const Fit
         "the data do not fit the model: reduced chi-square " + std::to_string(worst.chi_square) + " in " + worst.name +
             ". Look at the mount of each recording, the signs and units of the encoders and a stated clock offset; "
             "then: the unit is noisier than its sheet (leave the sheet out), its clock drifts, the encoders fail, or "
-            "the "
-            "model lacks a term (solve --model auto looks for it)");
+            "the model lacks a term (solve --model auto looks for it)");
   }
   if (chi_square > 1.0) observability.covariance *= chi_square;
 }

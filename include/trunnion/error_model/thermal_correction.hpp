@@ -3,8 +3,8 @@
 /// @file
 /// Correction over temperature to any order, of the biases and of the scales (inertial_unit.hpp, eq. 3).
 ///
-/// The unit as it is at a temperature is folded when the temperature moves: some four hundred operations then, and a
-/// sample in between costs what it costs without a temperature.
+/// The unit as it is at a temperature is folded when the temperature moves: two inverses of three by three and their
+/// products then; a sample in between costs what it costs without a temperature.
 
 #pragma once
 
