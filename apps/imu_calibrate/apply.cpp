@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 
 #include "../imu_correct/corrector.hpp"
@@ -52,15 +53,15 @@ class Corrected final : public SampleSink {
 };
 
 /// Message by message as imu_correct does live; other channels are copied.
-long long apply_to_log(const io::RecordingFiles& files, const io::LcmChannels& channels, const std::string& output,
+long long apply_to_log(const io::RecordingFiles& files, const io::LogChannels& channels, const std::string& output,
                        Corrector corrector) {
-  io::LcmLogReader log(files.lcm);
+  io::LcmLogReader log(files.log);
   io::LcmLogWriter out(output);
-  CorrectedMessages messages(files.lcm, channels);
+  CorrectedMessages messages(files.log, channels);
   io::LcmEvent event;
   std::string fault;
   while (log.next(event)) {
-    if (event.channel != channels.imu.name) {
+    if (event.channel != channels.imu_channel()) {
       out.write(event.timestamp, event.channel, event.data);
       continue;
     }
@@ -71,8 +72,8 @@ long long apply_to_log(const io::RecordingFiles& files, const io::LcmChannels& c
   messages.finish();
   if (messages.samples() == 0) {
     throw io::input_error(
-        files.lcm, 0, "",
-        "no usable message on the IMU channel '" + channels.imu.name + "'" + (fault.empty() ? "" : ": " + fault));
+        files.log, 0, "",
+        "no usable message on the IMU channel '" + channels.imu_channel() + "'" + (fault.empty() ? "" : ": " + fault));
   }
   out.commit();
   if (corrector.without_temperature() > 0)
@@ -112,15 +113,16 @@ long long apply_to_table(const Options& o, const io::RunFile& run, const io::Rec
 void apply(const Options& o) {
   auto [run, files] = one_recording(o.input, o.channel, o.of_run);
   files.encoder.clear();
-  const bool table = files.lcm.empty();
-  if (table != is_table(o.output))
-    throw Error(ExitCode::kUsage,
-                o.output + (table ? ": a corrected table is a .csv" : ": a corrected log is no table: name it .lcm"));
+  const io::LogFormat& format = io::format_of(files.name());
+  const bool is_log = !files.log.empty() && std::string(format.name) == "lcm";
+  if (is_log == (std::filesystem::path(o.output).extension() == ".csv"))
+    throw Error(ExitCode::kUsage, o.output + (is_log ? ": a corrected LCM log is no table: name it .lcm"
+                                                     : std::string(": a corrected ") + format.title + " is a .csv"));
   std::vector<std::string> sources = files_of(run);
   sources.insert(sources.end(), {o.input, o.calibration});
   keep_inputs(o.output, sources);
   long long samples = 0;
-  if (table) {
+  if (!is_log) {
     const InertialUnit<double> unit = io::unit_of(io::read_calibration_file(o.calibration), o.calibration, o.recording);
     samples = apply_to_table(o, run, files, unit);
   } else {
@@ -137,12 +139,12 @@ void apply(const Options& o) {
 }  // namespace
 
 void add_apply(CLI::App& app, ExitCode& exit_code) {
-  CLI::App* command = app.add_subcommand("apply", "Write a corrected log: LCM to LCM, tables to CSV");
+  CLI::App* command = app.add_subcommand("apply", "Write a corrected log: LCM to LCM, anything else to CSV");
   auto o = std::make_shared<Options>();
   command->add_option("calibration", o->calibration, "Calibration file")->required();
   command
       ->add_option("input", o->input,
-                   "LCM log; CSV with the header t_s,gyro_x_rad_s,...,accel_z_m_s2; or the run file of a recording "
+                   "A log of any format that is read (imu_calibrate convert --help); or the run file of a recording "
                    "(columns, raw counts), with --of-run")
       ->required();
   command->add_option("-o,--output", o->output, "Corrected file to write; other channels of a log are copied")

@@ -12,6 +12,7 @@
 #include "../imu_correct/corrector.hpp"
 #include "../terminal.hpp"
 #include "command.hpp"
+#include "export_target.hpp"
 #include "recordings.hpp"
 #include "trunnion/error_model/flash_block.hpp"
 #include "trunnion/io/calibration_file.hpp"
@@ -34,6 +35,7 @@ struct Options {
   int bits = 16;
   int fraction = 6;
   bool float_only = false;
+  TargetOptions target;
 };
 
 /// What is exported: the block, and what the header says about it.
@@ -333,39 +335,75 @@ std::string is_namespace(const std::string& text) {
 }  // namespace
 
 void add_export(CLI::App& app, ExitCode& exit_code) {
-  CLI::App* command = app.add_subcommand("export", "Write a calibration for firmware: a C++ header, a block for flash");
+  CLI::App* command = app.add_subcommand("export", "Write a calibration for firmware, or for another program");
   auto o = std::make_shared<Options>();
+  std::vector<std::string> formats = target_names();
+  formats.insert(formats.begin(), "c");
   command->add_option("calibration", o->calibration, "Calibration file")->required();
-  command->add_option("--format", o->format, "c: a header of constexpr coefficients")
+  command->add_option("--format", o->format, "c: a header of constexpr coefficients" + target_titles())
       ->capture_default_str()
-      ->check(CLI::IsMember({"c"}));
-  command->add_option("-o,--output", o->output, "Header to write");
-  command->add_option("--block", o->block, "Binary block for flash to write, little-endian, with version and CRC-32");
+      ->check(CLI::IsMember(formats));
+  command->add_option("-o,--output", o->output, "File to write");
+  auto* block = command->add_option("--block", o->block,
+                                    "Binary block for flash to write, little-endian, with version and CRC-32");
   auto* sheet = command->add_option("--sheet", o->sheet,
-                                    "Sensor sheet with the scale of raw counts: readings are counts then, and the "
-                                    "coefficients of the integer path are written too");
-  command->add_option("--bits", o->bits, "Of a raw count, sign included")
-      ->capture_default_str()
-      ->check(CLI::Range(2, 30))
-      ->needs(sheet);
-  command
-      ->add_option("--fraction", o->fraction,
-                   "Binary digits behind the point of a corrected count; with --bits at most 30")
-      ->capture_default_str()
-      ->check(CLI::Range(0, 28))
-      ->needs(sheet);
-  command->add_flag("--float-only", o->float_only, "With --sheet: the coefficients of the float path alone")
-      ->needs(sheet);
+                                    "Sensor sheet. c: with the scale of raw counts, readings are counts then, and the "
+                                    "coefficients of the integer path are written too; others: noise and rate");
+  auto* bits = command->add_option("--bits", o->bits, "Of a raw count, sign included")
+                   ->capture_default_str()
+                   ->check(CLI::Range(2, 30))
+                   ->needs(sheet);
+  auto* fraction = command
+                       ->add_option("--fraction", o->fraction,
+                                    "Binary digits behind the point of a corrected count; with --bits at most 30")
+                       ->capture_default_str()
+                       ->check(CLI::Range(0, 28))
+                       ->needs(sheet);
+  auto* float_only =
+      command->add_flag("--float-only", o->float_only, "With --sheet: the coefficients of the float path alone")
+          ->needs(sheet);
   command->add_option("--recording", o->recording, "Use the turn-on bias of this recording, from 1; default the mean")
       ->check(CLI::Range(1, 1000));
-  command->add_option("--namespace", o->name, "Of the header's names")
-      ->capture_default_str()
-      ->check(CLI::Validator(is_namespace, "NAME"));
+  auto* name = command->add_option("--namespace", o->name, "Of the header's names")
+                   ->capture_default_str()
+                   ->check(CLI::Validator(is_namespace, "NAME"));
+  auto* rate = command
+                   ->add_option("--rate-deg-per-s", o->target.rate_deg_per_s,
+                                "Other programs: at which the size of what they cannot say is stated")
+                   ->capture_default_str()
+                   ->check(CLI::PositiveNumber);
+  auto* gyro_id = command->add_option("--gyro-id", o->target.gyro_id, "px4: of the gyros, CAL_GYRO0_ID");
+  auto* accel_id = command->add_option("--accel-id", o->target.accel_id, "px4: of the accelerometers, CAL_ACC0_ID");
   command->footer(
-      "Example:\n  imu_calibrate export calibration.yaml --sheet sheet.yaml --bits 16 -o calibration.hpp --block "
+      "Example:\n  imu_calibrate export calibration.yaml --format kalibr -o imu.yaml\n  imu_calibrate export "
+      "calibration.yaml --sheet sheet.yaml --bits 16 -o calibration.hpp --block "
       "calibration.bin");
-  command->callback([o, &exit_code] {
-    export_calibration(*o);
+  const std::vector<CLI::Option*> of_c = {block, bits, fraction, float_only, name};
+  const std::vector<CLI::Option*> of_px4 = {gyro_id, accel_id};
+  command->callback([o, of_c, of_px4, rate, &exit_code] {
+    const auto refuse = [&](const CLI::Option* option, const char* owner) {
+      if (option->count() > 0) throw Error(ExitCode::kUsage, option->get_name() + " is for --format " + owner);
+    };
+    if (o->format == "c") {
+      if (rate->count() > 0) throw Error(ExitCode::kUsage, "--rate-deg-per-s is for the formats of other programs");
+    } else {
+      for (const CLI::Option* option : of_c) refuse(option, "c");
+    }
+    if (o->format != "px4") {
+      for (const CLI::Option* option : of_px4) refuse(option, "px4");
+    }
+    if (o->format == "c") {
+      export_calibration(*o);
+    } else {
+      TargetOptions target = o->target;
+      target.calibration = o->calibration;
+      target.format = o->format;
+      target.output = o->output;
+      target.sheet = o->sheet;
+      target.recording = o->recording;
+      keep_inputs(o->output, {o->calibration, o->sheet});
+      export_to_target(target);
+    }
     exit_code = ExitCode::kDone;
   });
 }

@@ -27,7 +27,7 @@ using Json = nlohmann::ordered_json;
 struct Options {
   std::string input;
   std::string format = "text";
-  io::LcmChannels channels;
+  io::LogChannels channels;
   std::vector<std::string> lcm_types;
 };
 
@@ -172,7 +172,9 @@ class InspectSink final : public SampleSink {
 Json inspect_recording(const io::RunFile& run, const io::RecordingFiles& files, const io::LcmTypes& types) {
   Json json = {{"file", files.name()}};
   if (!files.mount.empty()) json["mount"] = files.mount;
-  if (!files.lcm.empty()) look_at_channels(files.lcm, types, json);
+  const io::LogFormat& format = io::format_of(files.name());
+  json["format"] = format.name;
+  if (!files.log.empty() && std::string(format.name) == "lcm") look_at_channels(files.log, types, json);
   InspectSink sink(files.name(), {run.sheet.gyro_range, run.sheet.accel_range});
   std::vector<std::pair<std::string, std::string>> digests;
   try {
@@ -204,8 +206,9 @@ void print_channel(const char* name, const Json& c) {
 
 void print_text(const Json& all) {
   for (const Json& one : all["recordings"]) {
-    std::printf("%s%s\n", one["file"].get<std::string>().c_str(),
-                one.contains("mount") ? (", " + one["mount"].get<std::string>()).c_str() : "");
+    std::printf("%s%s%s\n", one["file"].get<std::string>().c_str(),
+                one.contains("mount") ? (", " + one["mount"].get<std::string>()).c_str() : "",
+                one.contains("channels") ? "" : (", " + one["format"].get<std::string>()).c_str());
     if (one.contains("channels")) print_channels(one);
     if (one.contains("imu")) print_channel("IMU", one["imu"]);
     if (one.contains("encoder")) print_channel("encoder", one["encoder"]);
@@ -230,7 +233,7 @@ ExitCode inspect(const Options& o) {
   } else {
     run.channels = o.channels;
     io::RecordingFiles files;
-    (is_table(o.input) ? files.imu : files.lcm) = o.input;
+    files.log = o.input;
     run.recordings.push_back(files);
   }
   io::LcmTypes types = *io::known_types();
@@ -258,12 +261,15 @@ void add_inspect(CLI::App& app, ExitCode& exit_code) {
   CLI::App* command =
       app.add_subcommand("inspect", "What a recording holds: rates, jitter, gaps, ranges, rests and turns");
   auto o = std::make_shared<Options>();
-  command->add_option("input", o->input, "Run file, LCM log or CSV")->required();
+  command->add_option("input", o->input, "Run file, or a log of any format that is read (imu_calibrate convert --help)")
+      ->required();
   command->add_option("--format", o->format, "Of the result")
       ->capture_default_str()
       ->check(CLI::IsMember({"text", "json"}));
-  command->add_option("--imu-channel", o->channels.imu.name, "Of a log")->capture_default_str();
-  command->add_option("--encoder-channel", o->channels.encoder.name, "Of a log")->capture_default_str();
+  command->add_option("--imu-channel", o->channels.imu.name,
+                      "Of a log: channel or topic; default IMU in an LCM log, else the only one");
+  command->add_option("--encoder-channel", o->channels.encoder.name,
+                      "Of a log: channel or topic; default ENCODER in an LCM log, else the only one");
   command->add_option("--lcm-types", o->lcm_types, "Definitions to know types by: a .lcm file, or a folder of them");
   command->footer("Example:\n  imu_calibrate inspect run.yaml");
   command->callback([o, &exit_code] { exit_code = inspect(*o); });

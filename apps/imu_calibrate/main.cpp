@@ -24,6 +24,7 @@ ExitCode run_command(std::vector<std::string> arguments) {
   add_inspect(app, exit_code);
   add_solve(app, exit_code);
   add_apply(app, exit_code);
+  add_convert(app, exit_code);
   add_export(app, exit_code);
   add_compare(app, exit_code);
   add_verify(app, exit_code);

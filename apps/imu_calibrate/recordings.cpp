@@ -4,7 +4,6 @@
 #include "recordings.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <mutex>
 
@@ -36,13 +35,6 @@ class ReadProgress {
   ProgressLine line_;
 };
 
-bool has_extension(const std::string& path, std::initializer_list<const char*> extensions) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
-}
-
 /// @throws Error (input) when two recordings are the same file by content
 void collect(RunInputs& inputs, std::vector<RunInputs>& each) {
   for (std::size_t i = 0; i < each.size(); ++i) {
@@ -63,13 +55,15 @@ void collect(RunInputs& inputs, std::vector<RunInputs>& each) {
 
 }  // namespace
 
-bool is_run_file(const std::string& path) { return has_extension(path, {".yaml", ".yml"}); }
-bool is_table(const std::string& path) { return has_extension(path, {".csv", ".txt", ".tsv", ".dat", ".mat"}); }
+bool is_run_file(const std::string& path) {
+  const std::string extension = std::filesystem::path(path).extension().string();
+  return extension == ".yaml" || extension == ".yml";
+}
 
 std::vector<std::string> files_of(const io::RunFile& run) {
   std::vector<std::string> files = {run.path, run.rig, run.sheet_path, run.moves};
   for (const io::RecordingFiles& recording : run.recordings)
-    files.insert(files.end(), {recording.lcm, recording.imu, recording.encoder, recording.gyro, recording.accel});
+    files.insert(files.end(), {recording.log, recording.imu, recording.encoder, recording.gyro, recording.accel});
   return files;
 }
 
@@ -95,7 +89,7 @@ OneRecording one_recording(const std::string& input, const std::string& channel,
   } else {
     if (of_run > 0) throw Error(ExitCode::kUsage, "--of-run: " + input + " is no run file");
     if (!channel.empty()) one.run.channels.imu.name = channel;
-    (is_table(input) ? one.files.imu : one.files.lcm) = input;
+    one.files.log = input;
   }
   return one;
 }

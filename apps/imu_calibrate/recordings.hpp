@@ -20,12 +20,11 @@ namespace trunnion::app {
 /// Digests and losses of a run's inputs.
 struct RunInputs {
   std::vector<std::pair<std::string, std::string>> digests;  ///< path as in the run file's folder, SHA-256
-  io::LcmLosses losses;
+  io::LogLosses losses;
 };
 
-/// What a file is, by its extension: a run file (.yaml, .yml), a table (.csv, .txt, .tsv, .dat, .mat), else an LCM log.
+/// By its extension: .yaml, .yml. What another file is, its content tells (io::format_of).
 bool is_run_file(const std::string& path);
-bool is_table(const std::string& path);
 
 /// Every file that a run names, itself included.
 std::vector<std::string> files_of(const io::RunFile& run);

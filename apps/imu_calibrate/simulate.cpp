@@ -151,9 +151,9 @@ Bench bench_of_run(const std::string& path, std::string& text) {
   for (const std::string& file : {run.rig, run.sheet_path, run.moves}) bench.copies.emplace_back(file, beside(file));
   for (std::size_t r = 0; r < run.recordings.size(); ++r) {
     const io::RecordingFiles& files = run.recordings[r];
-    if (files.lcm.empty())
+    if (files.log.empty())
       throw Error(ExitCode::kInput, path + ": to be simulated, a recording has one LCM log: " + files.name());
-    bench.logs.push_back(beside(files.lcm));
+    bench.logs.push_back(beside(files.log));
     bench.mount.push_back(static_cast<int>(std::find(mounts.begin(), mounts.end(), files.mount) - mounts.begin()));
     simulation::check_limits(bench.moves[r], bench.rig.limits, run.moves + ": recording " + std::to_string(r + 1));
   }

@@ -156,7 +156,7 @@ void Corrector::take_temperature(double celsius) {
     ++without_temperature_;
 }
 
-CorrectedMessages::CorrectedMessages(const std::string& source, const io::LcmChannels& channels)
+CorrectedMessages::CorrectedMessages(const std::string& source, const io::LogChannels& channels)
     : decoder_(source, taken_, channels), mapped_(channels.imu.map != nullptr) {}
 
 const std::string* CorrectedMessages::left_out(const io::LcmEvent& event, const std::string& why) {
@@ -187,14 +187,14 @@ const std::string* CorrectedMessages::correct(const io::LcmEvent& event, Correct
   }
   taken_.stamps.clear();
   taken_.values.clear();
-  const long long damaged = decoder_.damaged().records;
+  const long long damaged = decoder_.damaged_records();
   try {
     decoder_.imu(event);
   } catch (const Error& e) {
     taken_.values.clear();
     why_ = e.what();
   }
-  if (decoder_.damaged().records > damaged) {
+  if (decoder_.damaged_records() > damaged) {
     why_ = decoder_.first_fault();
     taken_.values.clear();
   }

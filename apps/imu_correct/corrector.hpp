@@ -72,7 +72,7 @@ class Corrector {
 class CorrectedMessages {
  public:
   /// @param source for messages
-  CorrectedMessages(const std::string& source, const io::LcmChannels& channels);
+  CorrectedMessages(const std::string& source, const io::LogChannels& channels);
 
   /// @return the corrected message; nothing when it could not be decoded: why() says it
   const std::string* correct(const io::LcmEvent& event, Corrector& corrector);

@@ -59,13 +59,13 @@ class Correct {
         file_(o.corrector.calibration),
         corrector_(std::make_unique<Corrector>(o.corrector)),
         messages_(connection_.url(), channels_) {
-    if (channels_.imu.name == o.out)
+    if (channels_.imu_channel() == o.out)
       throw Error(ExitCode::kUsage, "--out " + o.out + ": is the channel that is corrected");
-    connection_.subscribe(channels_.imu.name, &Correct::on_message, *this);
+    connection_.subscribe(channels_.imu_channel(), &Correct::on_message, *this);
   }
 
   ExitCode run() {
-    std::fprintf(stderr, "%s: %s to %s, raw counts in %s\n", connection_.url().c_str(), channels_.imu.name.c_str(),
+    std::fprintf(stderr, "%s: %s to %s, raw counts in %s\n", connection_.url().c_str(), channels_.imu_channel().c_str(),
                  o_.out.c_str(), corrector_->takes_counts() ? corrector_->path() : "no way: there is no --sheet");
     auto looked = std::chrono::steady_clock::now();
     while (!interrupted()) {
@@ -82,8 +82,8 @@ class Correct {
   }
 
  private:
-  static io::LcmChannels channels(const Options& o) {
-    io::LcmChannels channels;
+  static io::LogChannels channels(const Options& o) {
+    io::LogChannels channels;
     if (!o.run.empty()) channels = io::read_run_file(o.run).channels;
     if (!o.in.empty()) channels.imu.name = o.in;
     return channels;
@@ -109,7 +109,7 @@ class Correct {
   }
 
   const Options& o_;
-  io::LcmChannels channels_;
+  io::LogChannels channels_;
   bus::Connection connection_;
   Watched file_;  // before it is read
   std::unique_ptr<Corrector> corrector_;

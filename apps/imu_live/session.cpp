@@ -46,16 +46,16 @@ Session::Session(const io::RunFile& run, const io::RigFile& rig, const std::vect
     throw Error(ExitCode::kInput,
                 run.path + ": more than " + std::to_string(kMaxRecordings) + " recordings in one run");
   for (const io::RecordingFiles& files : run.recordings) {
-    const std::string folder = std::filesystem::path(files.lcm).parent_path().string();
+    const std::string folder = std::filesystem::path(files.log).parent_path().string();
     std::error_code error;
-    if (!files.lcm.empty() && !std::filesystem::exists(files.lcm, error) &&
+    if (!files.log.empty() && !std::filesystem::exists(files.log, error) &&
         ::access(folder.empty() ? "." : folder.c_str(), W_OK) != 0)
-      throw io::input_error(files.lcm, 0, "", std::string("cannot write: ") + std::strerror(errno));
+      throw io::input_error(files.log, 0, "", std::string("cannot write: ") + std::strerror(errno));
     for (const io::RecordingFiles& other : run.recordings) {
-      if (&other != &files && other.lcm == files.lcm && !files.lcm.empty())
-        throw Error(ExitCode::kInput, run.path + ": two recordings have the log " + files.lcm);
+      if (&other != &files && other.log == files.log && !files.log.empty())
+        throw Error(ExitCode::kInput, run.path + ": two recordings have the log " + files.log);
     }
-    if (files.lcm.empty() || files.mount.empty())
+    if (files.log.empty() || files.mount.empty())
       throw Error(ExitCode::kInput, run.path +
                                         ": a live calibration records LCM logs on a rig: each recording needs a "
                                         "mount and a log");
@@ -65,10 +65,10 @@ Session::Session(const io::RunFile& run, const io::RigFile& rig, const std::vect
     s.model = run_.sheet.model;
     s.unattended = options_.unattended;
   });
-  connection_.subscribe(run_.channels.imu.name, &Session::on_imu, *this);
-  if (run_.channels.encoder.name == run_.channels.imu.name)
+  connection_.subscribe(run_.channels.imu_channel(), &Session::on_imu, *this);
+  if (run_.channels.encoder_channel() == run_.channels.imu_channel())
     throw Error(ExitCode::kInput, run.path + ": the unit and the encoders have the same channel");
-  connection_.subscribe(run_.channels.encoder.name, &Session::on_encoder, *this);
+  connection_.subscribe(run_.channels.encoder_channel(), &Session::on_encoder, *this);
   load_or_wait();
 }
 
@@ -87,8 +87,8 @@ void Session::load_or_wait() {
       s.recording = static_cast<int>(index) + 1;
       s.mount = files.mount;
     });
-    if (!fs::exists(files.lcm, error)) {
-      const std::string part = io::LcmJournal::part_of(files.lcm);
+    if (!fs::exists(files.log, error)) {
+      const std::string part = io::LcmJournal::part_of(files.log);
       if (fs::exists(part, error) && fs::file_size(part, error) > 0) return start();
       state_.change([&](LiveState& s) {
         s.phase = Phase::kWaiting;
@@ -105,14 +105,14 @@ void Session::load_or_wait() {
 void Session::load(std::size_t index) {
   const io::RecordingFiles& files = run_.recordings[index];
   calibration::Compressor compressor(compress_options(run_, files));
-  const io::LcmLosses losses = io::read_recording(run_, files, compressor, inputs_.digests);
+  const io::LogLosses losses = io::read_recording(run_, files, compressor, inputs_.digests);
   inputs_.losses.records += losses.records;
   inputs_.losses.bytes += losses.bytes;
   inputs_.losses.samples += losses.samples;
   recordings_.push_back({compressor.finish(), mount_of(index)});
   estimator_.begin(static_cast<int>(index) + 1, mount_of(index));
   estimator_.add(recordings_.back().data);
-  add_notice(state_, files.lcm + " is recorded already and is used; move it away to record " + files.mount + " again");
+  add_notice(state_, files.log + " is recorded already and is used; move it away to record " + files.mount + " again");
 }
 
 void Session::fresh_recording() {
@@ -135,10 +135,10 @@ void Session::start() {
   std::string unfit;
   journal_.reset();
   try {
-    journal_ = std::make_unique<io::LcmJournal>(files.lcm, [&](const io::LcmEvent& event) {
+    journal_ = std::make_unique<io::LcmJournal>(files.log, [&](const io::LcmEvent& event) {
       try {
-        if (unfit.empty() && event.channel == run_.channels.imu.name) take(event, true);
-        if (unfit.empty() && event.channel == run_.channels.encoder.name) take(event, false);
+        if (unfit.empty() && event.channel == run_.channels.imu_channel()) take(event, true);
+        if (unfit.empty() && event.channel == run_.channels.encoder_channel()) take(event, false);
       } catch (const Error& e) {
         unfit = e.what();
       }
@@ -163,7 +163,7 @@ void Session::start() {
                                                     : ""));
     hand_over();
   } else {
-    add_notice(state_, "recording " + files.mount + " into " + files.lcm);
+    add_notice(state_, "recording " + files.mount + " into " + files.log);
   }
 }
 
@@ -184,10 +184,10 @@ void Session::take(const io::LcmEvent& event, bool imu) {
   message_.samples.clear();
   message_.angles.clear();
   std::string fault;
-  const long long damaged = decoder_->damaged().records;
+  const long long damaged = decoder_->damaged_records();
   try {
     imu ? decoder_->imu(event) : decoder_->encoder(event);
-    if (decoder_->damaged().records > damaged) fault = decoder_->first_fault();
+    if (decoder_->damaged_records() > damaged) fault = decoder_->first_fault();
   } catch (const Error& e) {  // a number that is none: live, one message is left out
     fault = e.what();
     message_.samples.clear();
@@ -232,7 +232,7 @@ void Session::begin_again(const std::string& why) {
   fresh_recording();
   estimator_.abandon();
   try {
-    journal_ = std::make_unique<io::LcmJournal>(files.lcm, nullptr);
+    journal_ = std::make_unique<io::LcmJournal>(files.log, nullptr);
   } catch (const Error& e) {
     say_once(said_journal_, std::string("nothing is recorded: ") + e.what() + "; the calibration goes on");
   }
@@ -262,7 +262,7 @@ void Session::finish_recording() {
   }
   const std::string digest = journal_ ? journal_->finish() : std::string();
   if (!digest.empty()) {
-    inputs_.digests.emplace_back(files.lcm, digest);
+    inputs_.digests.emplace_back(files.log, digest);
   } else {
     add_notice(state_, "the recording of " + files.mount + " is lost" + (journal_ ? ": " + journal_->failure() : "") +
                            "; the calibration goes on without it");
@@ -287,7 +287,7 @@ void Session::finish_recording() {
   if (open > 0 && !seen.enough) {
     add_notice(state_, std::to_string(open) + " of " + std::to_string(seen.steps.size()) +
                            " steps of its plan were not seen; to record " + files.mount +
-                           " again, start anew without " + files.lcm);
+                           " again, start anew without " + files.log);
   }
   recording_ = false;
   recordings_.push_back(std::move(recording));
@@ -363,7 +363,7 @@ void Session::watch() {
                  "the unit's publisher began again: if the unit was switched off, its turn-on bias is another; then "
                  "end this recording and start it anew");
     }
-    if (sequence.two_publishers()) say_once(said_two_, "two publishers on channel " + run_.channels.imu.name);
+    if (sequence.two_publishers()) say_once(said_two_, "two publishers on channel " + run_.channels.imu_channel());
     if (sequence.numbered() && sequence.lost() > 0)
       say_once(said_loss_, std::to_string(sequence.lost()) + " samples were lost on the way, and counting");
     if (compressor_->figures().saturated > 0)

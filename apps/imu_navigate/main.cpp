@@ -216,7 +216,8 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("log", o.source.log,
                  "LCM log, or CSV with the header t_s,gyro_x_rad_s,...,accel_z_m_s2 (units by name)")
       ->required();
-  app.add_option("--channel", o.source.channel, "IMU channel of a log")->default_val("IMU");
+  app.add_option("--channel", o.source.channel,
+                 "Of the unit in a log: channel or topic; default IMU in an LCM log, else the only one");
   app.add_flag("--increments", o.source.increments, "The values are increments: rad and m/s a sample");
   app.add_option("--calibration", o.source.calibration, "Calibration file to correct the samples with");
   app.add_option("--sheet", o.sheet, "Sensor sheet: noise and range");

@@ -25,8 +25,6 @@ struct Stamped {
   double value;
 };
 
-bool is_csv(const std::string& path) { return path.size() > 4 && path.substr(path.size() - 4) == ".csv"; }
-
 std::string at(double t) { return figure(t, 13) + " s"; }
 
 class Collector final : public SampleSink {
@@ -92,11 +90,12 @@ class Collector final : public SampleSink {
 void read_log(const RecordingSource& source, Collector& collector, Recording& recording) {
   io::LcmLogReader log(source.log);
   io::LcmDecoder decoder(source.log, collector);
+  const std::string channel = source.channel.empty() ? io::LogChannels().imu_channel() : source.channel;
   io::LcmEvent event;
   ProgressLine progress;
   const auto size = static_cast<double>(std::max<std::int64_t>(1, log.size()));
   while (log.next(event)) {
-    if (event.channel == source.channel) decoder.imu(event);
+    if (event.channel == channel) decoder.imu(event);
     if (source.axis.empty() && source.needs_angle && event.channel == "ENCODER") decoder.encoder(event);
     if (source.axis.empty() && source.needs_pulses && event.channel == "INDEX")
       collector.pulse(io::decode_index(source.log, event));
@@ -104,10 +103,8 @@ void read_log(const RecordingSource& source, Collector& collector, Recording& re
   }
   decoder.finish();
   if (collector.samples_.empty())
-    throw io::input_error(
-        source.log, 0, "",
-        "no usable message on the IMU channel '" + source.channel + "' (a table's name ends in .csv)");
-  recording.damaged = log.lost_records() + decoder.damaged().records;
+    throw io::input_error(source.log, 0, "", "no usable message on the IMU channel '" + channel + "'");
+  recording.damaged = log.lost_records() + decoder.damaged_records();
 }
 
 std::int64_t to_utime(const std::string& path, double t) {
@@ -243,11 +240,14 @@ void judge_magnitude(const RecordingSource& source, Recording& recording) {
 Recording read_recording(const RecordingSource& source) {
   Recording recording;
   Collector collector(source.log, recording);
-  if (is_csv(source.log)) {
-    std::string digest;
-    io::read_imu_csv(source.log, {}, {}, collector, digest);
-  } else {
+  if (std::string(io::format_of(source.log).name) == "lcm") {
     read_log(source, collector, recording);
+  } else {
+    io::LogRequest request;
+    request.path = source.log;
+    request.channels.imu.name = source.channel;
+    request.need_encoder = source.axis.empty() && source.needs_angle;
+    recording.damaged = io::read_log(request, collector).records;
   }
   if (!source.axis.empty()) read_axis(source, collector);
   recording.period = period_of(collector.utimes_, source.log);

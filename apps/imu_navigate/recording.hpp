@@ -13,8 +13,8 @@
 namespace trunnion::app {
 
 struct RecordingSource {
-  std::string log;      // LCM log or CSV
-  std::string channel;  // of the IMU, in a log
+  std::string log;      // of any format
+  std::string channel;  // of the IMU, in a log; empty: where it usually is
   std::string axis;     // CSV of the axis: t_s,angle_rad, or t_s of the pulses; empty: none, or in the log
   bool needs_angle = false;
   bool needs_pulses = false;

@@ -23,19 +23,11 @@ constexpr std::size_t kSequence = 16;  // where it is in every type
 constexpr std::size_t kBatchSample = 7 * 8;
 constexpr long long kEventsPerProgress = 100000;
 constexpr std::size_t kNamedChannels = 20;  // in a message
-constexpr double kTolerableDamage = 1e-3;   // messages that cannot be decoded, against those that can
-constexpr double kLargestReading = 1e6;     // rad/s, m/s^2
-constexpr double kColdest = -273.15;        // degC
-constexpr double kHottest = 1000.0;
-/// What is no temperature is not known.
-double known_temperature(double celsius) { return celsius > kColdest && celsius < kHottest ? celsius : std::nan(""); }
-
-constexpr double kLargestAngle = 1e7;  // rad
 
 }  // namespace
 
-LcmDecoder::LcmDecoder(std::string source, SampleSink& sink, const LcmChannels& channels)
-    : source_(std::move(source)), sink_(sink), counts_(channels.sheet.counts) {
+LcmDecoder::LcmDecoder(std::string source, SampleSink& sink, const LogChannels& channels)
+    : source_(std::move(source)), intake_(sink), counts_(channels.sheet.counts) {
   if (channels.imu.map) imu_map_.emplace(channels.imu.map, channels.sheet);
   if (channels.encoder.map) encoder_map_.emplace(channels.encoder.map, channels.sheet);
 }
@@ -51,21 +43,21 @@ void LcmDecoder::imu(const LcmEvent& event) {
       sample.f(i) = load_double(p + 48 + 8 * i);
     }
     imu_sequence_.add(load_i64(p + kSequence));
-    tell_temperature(load_double(p + kImuBytes - 8));
+    intake_.temperature(load_double(p + kImuBytes - 8));
     deliver(event, load_i64(p + 8), sample);
   } else if (fingerprint == kImuBatchFingerprint && event.data.size() >= kBatchHead) {
     batch(event);
   } else if (const auto raw = decode_imu_counts(event.data)) {
     if (counts_.gyro.scale == 1.0 || counts_.accel.scale == 1.0)
-      return damage(event, fault(event, "channel " + printable(std::string(event.channel)),
-                                 "holds raw counts, and no sheet says what one is (scale_counts_per_rad_s, "
-                                 "scale_counts_per_m_s2)"));
+      return damage(event,
+                    "holds raw counts, and no sheet says what one is (scale_counts_per_rad_s, "
+                    "scale_counts_per_m_s2)");
     for (std::size_t i = 0; i < 3; ++i) {
       sample.w(static_cast<int>(i)) = (raw->counts[i] - counts_.gyro.zero) / counts_.gyro.scale;
       sample.f(static_cast<int>(i)) = (raw->counts[i + 3] - counts_.accel.zero) / counts_.accel.scale;
     }
     imu_sequence_.add(raw->sequence);
-    tell_temperature(raw->celsius());
+    intake_.temperature(raw->celsius());
     deliver(event, raw->utime, sample);
   } else {
     damage(event, foreign(event, fingerprint,
@@ -76,7 +68,7 @@ void LcmDecoder::imu(const LcmEvent& event) {
 
 void LcmDecoder::mapped_imu(const LcmEvent& event) {
   const std::string wrong = imu_map_->imu(event, mapped_);
-  if (!wrong.empty()) return damage(event, fault(event, "channel " + printable(std::string(event.channel)), wrong));
+  if (!wrong.empty()) return damage(event, wrong);
   for (const MappedMessages::Sample& sample : mapped_) {
     // batches may overlap: what came before is not counted again
     if (imu_map_->has_sequence() && !imu_sequence_.add(sample.sequence)) continue;
@@ -90,7 +82,7 @@ void LcmDecoder::encoder(const LcmEvent& event) {
     std::int64_t sequence = 0;
     std::array<double, 2> angle{};
     const std::string wrong = encoder_map_->encoder(event, utime, sequence, angle);
-    if (!wrong.empty()) return damage(event, fault(event, "channel " + printable(std::string(event.channel)), wrong));
+    if (!wrong.empty()) return damage(event, wrong);
     if (encoder_map_->has_sequence()) encoder_sequence_.add(sequence);
     return deliver_angles(event, utime, angle);
   }
@@ -102,54 +94,29 @@ void LcmDecoder::encoder(const LcmEvent& event) {
   }
   const auto axes = static_cast<std::int32_t>(load_u32(p + 24));
   if (axes != 2 || event.data.size() != kEncoderHead + 16)
-    return damage(event, fault(event, "num_axes", "is " + std::to_string(axes) + ", a two-axis table has 2"));
+    return damage(event, "num_axes", "is " + std::to_string(axes) + ", a two-axis table has 2");
   encoder_sequence_.add(load_i64(p + kSequence));
   deliver_angles(event, load_i64(p + 8), {load_double(p + kEncoderHead), load_double(p + kEncoderHead + 8)});
 }
 
 void LcmDecoder::deliver_angles(const LcmEvent& event, std::int64_t utime, const std::array<double, 2>& angle) {
-  for (std::size_t i = 0; i < angle.size(); ++i) {
-    if (!std::isfinite(angle[i])) throw fault(event, "angle[" + std::to_string(i) + "]", "is not finite");
-    if (std::abs(angle[i]) > kLargestAngle) return damage(event, fault(event, "angle", "is beyond a million turns"));
-  }
-  ++encoders_;
-  sink_.encoder(utime, angle[0], angle[1]);
+  intake_.encoder(utime, angle, event.data.size(),
+                  [&](const std::string& field, const std::string& what) { return fault(event, field, what); });
 }
 
 void LcmDecoder::deliver(const LcmEvent& event, std::int64_t utime, const InertialSample<double>& sample) {
-  const double w = std::abs(sample.w(0)) + std::abs(sample.w(1)) + std::abs(sample.w(2));
-  const double f = std::abs(sample.f(0)) + std::abs(sample.f(1)) + std::abs(sample.f(2));
-  if (!(w + f < kLargestReading)) return doubt(event, sample);
-  ++samples_;
-  sink_.imu(utime, sample);
-}
-
-void LcmDecoder::tell_temperature(double celsius) {
-  celsius = known_temperature(celsius);
-  const bool known = std::isfinite(celsius);
-  if (!known && !told_temperature_) return;
-  told_temperature_ = known;
-  sink_.temperature(celsius);
-}
-
-/// Names the number that is none, or beyond any sensor.
-void LcmDecoder::doubt(const LcmEvent& event, const InertialSample<double>& sample) {
-  for (int i = 0; i < 6; ++i) {
-    const double value = i < 3 ? sample.w(i) : sample.f(i - 3);
-    const std::string field = (i < 3 ? "angular_rate[" : "specific_force[") + std::to_string(i % 3) + "]";
-    if (!std::isfinite(value)) throw fault(event, field, "is not finite");
-    if (std::abs(value) >= kLargestReading / 6.0) return damage(event, fault(event, field, "is beyond any sensor"));
-  }
+  intake_.imu(utime, sample, event.data.size(),
+              [&](const std::string& field, const std::string& what) { return fault(event, field, what); });
 }
 
 void LcmDecoder::batch(const LcmEvent& event) {
   const char* p = event.data.data();
   const std::uint64_t n = load_u32(p + 24);
   if (event.data.size() != kBatchHead + kBatchSample * n + 8) {
-    return damage(event, fault(event, "num_samples", "does not fit the length of the message"));
+    return damage(event, "num_samples", "does not fit the length of the message");
   }
   if (n > 0) imu_sequence_.add(load_i64(p + kSequence), static_cast<std::int64_t>(n));
-  tell_temperature(load_double(p + event.data.size() - 8));
+  intake_.temperature(load_double(p + event.data.size() - 8));
   const char* utime = p + kBatchHead;
   for (std::uint64_t k = 0; k < n; ++k) {
     InertialSample<double> sample;
@@ -161,15 +128,13 @@ void LcmDecoder::batch(const LcmEvent& event) {
   }
 }
 
-void LcmDecoder::damage(const LcmEvent& event, const Error& fault) {
-  if (!first_fault_) first_fault_ = fault;
-  ++damaged_.records;
-  damaged_.bytes += static_cast<long long>(event.data.size());
+void LcmDecoder::damage(const LcmEvent& event, const std::string& field, const std::string& what) {
+  intake_.damage(event.data.size(), fault(event, field, what));
 }
 
-void LcmDecoder::finish() const {
-  const auto whole = static_cast<double>(samples_ + encoders_);
-  if (first_fault_ && static_cast<double>(damaged_.records) > kTolerableDamage * whole) throw *first_fault_;
+/// Of the message as a whole.
+void LcmDecoder::damage(const LcmEvent& event, const std::string& what) {
+  damage(event, "channel " + printable(std::string(event.channel)), what);
 }
 
 /// At a byte of a file, or of a bus the number of the message.
@@ -178,50 +143,49 @@ Error LcmDecoder::fault(const LcmEvent& event, const std::string& field, const s
   return input_error(source_, 0, "message " + std::to_string(event.number) + ": " + field, what);
 }
 
-Error LcmDecoder::foreign(const LcmEvent& event, std::uint64_t fingerprint, const std::string& expected) const {
+std::string LcmDecoder::foreign(const LcmEvent& event, std::uint64_t fingerprint, const std::string& expected) const {
   std::string known;
   for (const MessagePreset& preset : message_presets()) {
     if (preset.map.types->fingerprint(preset.map.type) != fingerprint) continue;
     known = "; that is " + preset.name + ": state 'preset: " + preset.name + "' for the channel";
     break;
   }
-  return fault(event, "channel " + printable(std::string(event.channel)),
-               "holds a message of another type, fingerprint " + hexadecimal(fingerprint) + ", " +
-                   std::to_string(event.data.size()) + " bytes" + known + "; expected " + expected);
+  return "holds a message of another type, fingerprint " + hexadecimal(fingerprint) + ", " +
+         std::to_string(event.data.size()) + " bytes" + known + "; expected " + expected;
 }
 
-LcmLosses read_lcm_recording(const std::string& path, const LcmChannels& channels, bool need_encoder, SampleSink& sink,
-                             Sha256* digest, const Progress& progress) {
-  LcmLogReader log(path, digest);
-  LcmDecoder decoder(path, sink, channels);
+LogLosses read_lcm_recording(const LogRequest& request, SampleSink& sink) {
+  const std::string imu = request.channels.imu_channel();
+  const std::string encoder = request.channels.encoder_channel();
+  LcmLogReader log(request.path, request.digest);
+  LcmDecoder decoder(request.path, sink, request.channels);
   LcmEvent event;
   long long events = 0;
   std::set<std::string, std::less<>> others;
   while (log.next(event)) {
-    if (event.channel == channels.imu.name) {
+    if (event.channel == imu) {
       decoder.imu(event);
-    } else if (event.channel == channels.encoder.name) {
+    } else if (event.channel == encoder) {
       decoder.encoder(event);
     } else if (others.size() < kNamedChannels && others.find(event.channel) == others.end()) {
       others.emplace(event.channel);
     }
-    if (progress && ++events % kEventsPerProgress == 0)
-      progress(static_cast<double>(event.byte) / static_cast<double>(log.size()));
+    if (request.progress && ++events % kEventsPerProgress == 0)
+      request.progress(static_cast<double>(event.byte) / static_cast<double>(log.size()));
   }
   decoder.finish();
   std::string others_named;
   for (const std::string& name : others)
     others_named += (others_named.empty() ? "; other channels: " : ", ") + printable(name);
-  if (decoder.samples() == 0) {
-    throw input_error(path, 0, "",
-                      "no usable message on the IMU channel '" + channels.imu.name + "'" + others_named +
+  if (request.need_imu && decoder.samples() == 0) {
+    throw input_error(request.path, 0, "",
+                      "no usable message on the IMU channel '" + imu + "'" + others_named +
                           (log.lost_bytes() > 0 ? "; " + std::to_string(log.lost_bytes()) + " bytes are damaged" : ""));
   }
-  if (need_encoder && decoder.encoders() == 0) {
-    throw input_error(path, 0, "",
-                      "no usable message on the encoder channel '" + channels.encoder.name + "'" + others_named);
+  if (request.need_encoder && decoder.encoders() == 0) {
+    throw input_error(request.path, 0, "", "no usable message on the encoder channel '" + encoder + "'" + others_named);
   }
-  return {log.lost_records() + decoder.damaged().records, log.lost_bytes() + decoder.damaged().bytes,
+  return {log.lost_records() + decoder.damaged_records(), log.lost_bytes() + decoder.damaged_bytes(),
           decoder.imu_sequence().numbered() ? decoder.imu_sequence().lost() : 0};
 }
 
@@ -275,7 +239,9 @@ void encode_imu_counts(const ImuCounts& sample, std::string& out) {
   append_unsigned(out, static_cast<std::uint32_t>(sample.temperature));
 }
 
-double ImuCounts::celsius() const { return known_temperature(temperature / 256.0); }  // kNoTemperature is none
+double ImuCounts::celsius() const {
+  return SampleIntake::known_temperature(temperature / 256.0);
+}  // kNoTemperature is none
 
 std::optional<ImuCounts> decode_imu_counts(std::string_view message) {
   const char* p = message.data();

@@ -125,7 +125,7 @@ RecordingFiles read_files(const StrictYaml& node, const std::string& run, bool h
   if (has_rig) files.mount = node.at("mount").text();
   const StrictYaml log = node.at("log");
   if (!log.is_map()) {
-    files.lcm = beside(run, log.text());
+    files.log = beside(run, log.text());
   } else if (log.has("gyro") || log.has("accel")) {
     log.only({"gyro", "accel", "encoder"});
     files.gyro = beside(run, log.at("gyro").text());
@@ -233,29 +233,73 @@ RunFile read_run_file(const std::string& path) {
   return run;
 }
 
-LcmLosses read_recording(const RunFile& run, const RecordingFiles& files, SampleSink& sink,
+namespace {
+
+/// Passes on one of the two channels.
+class OneChannel final : public SampleSink {
+ public:
+  OneChannel(SampleSink& sink, bool is_imu) : sink_(sink), is_imu_(is_imu) {}
+  void imu(std::int64_t utime, const InertialSample<double>& sample) override {
+    if (is_imu_) sink_.imu(utime, sample);
+  }
+  void temperature(double celsius) override {
+    if (is_imu_) sink_.temperature(celsius);
+  }
+  void encoder(std::int64_t utime, double azimuth, double pitch) override {
+    if (!is_imu_) sink_.encoder(utime, azimuth, pitch);
+  }
+
+ private:
+  SampleSink& sink_;
+  bool is_imu_;
+};
+
+}  // namespace
+
+LogRequest log_request(const RunFile& run, const std::string& path) {
+  LogRequest request;
+  request.path = path;
+  request.channels = run.channels;
+  request.columns = run.columns;
+  request.joints = {run.outer_axis, run.inner_axis};
+  return request;
+}
+
+LogLosses read_recording(const RunFile& run, const RecordingFiles& files, SampleSink& sink,
                          std::vector<std::pair<std::string, std::string>>& inputs, const Progress& progress) {
-  if (!files.lcm.empty()) {
+  LogLosses losses;
+  const auto read = [&](const std::string& path, bool need_imu, bool need_encoder, SampleSink& into) {
+    LogRequest request = log_request(run, path);
+    request.need_imu = need_imu;
+    request.need_encoder = need_encoder;
+    request.progress = progress;
     Sha256 digest;
-    const LcmLosses losses = read_lcm_recording(files.lcm, run.channels, !files.mount.empty(), sink, &digest, progress);
-    inputs.emplace_back(files.lcm, digest.finish());
+    request.digest = &digest;
+    const LogLosses lost = read_log(request, into);
+    losses.records += lost.records;
+    losses.bytes += lost.bytes;
+    losses.samples += lost.samples;
+    inputs.emplace_back(path, digest.finish());
+  };
+  if (!files.log.empty()) {
+    read(files.log, true, !files.mount.empty(), sink);
     return losses;
   }
-  std::string digest;
   if (!files.imu.empty()) {
-    read_imu_csv(files.imu, run.columns, run.sheet, sink, digest);
-    inputs.emplace_back(files.imu, digest);
+    OneChannel only(sink, true);
+    read(files.imu, true, false, only);
   } else {
+    std::string digest;
     std::string accel_digest;
     read_split_csv(files.gyro, files.accel, run.columns, run.sheet, sink, digest, accel_digest);
     inputs.emplace_back(files.gyro, digest);
     inputs.emplace_back(files.accel, accel_digest);
   }
   if (!files.encoder.empty()) {
-    read_encoder_csv(files.encoder, run.columns, sink, digest);
-    inputs.emplace_back(files.encoder, digest);
+    OneChannel only(sink, false);
+    read(files.encoder, false, true, only);
   }
-  return {};
+  return losses;
 }
 
 }  // namespace trunnion::io

@@ -395,7 +395,7 @@ TEST_F(LiveSession, RefusesMoreRecordingsThanACalibrationHolds) {
   io::RunFile many = bench_.run;
   for (int i = 3; i <= kMaxRecordings; ++i) {
     many.recordings.push_back(many.recordings[0]);
-    many.recordings.back().lcm += std::to_string(i);
+    many.recordings.back().log += std::to_string(i);
   }
   bus::Connection bus("memq://");
   SharedState state;

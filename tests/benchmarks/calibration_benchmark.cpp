@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "calibration/experiment.hpp"
+#include "matchers/log_request.hpp"
 #include "matchers/temporary_folder.hpp"
 #include "trunnion/io/lcm_recording.hpp"
 #include "trunnion_lcm/encoder_t.hpp"
@@ -52,7 +53,7 @@ const std::vector<std::string>& logs() {
 
 calibration::CompressedRecording compress(const std::string& path, io::Sha256* digest) {
   calibration::Compressor compressor({});
-  io::read_lcm_recording(path, {}, true, compressor, digest);
+  io::read_lcm_recording(io::log_request(path, {}, true, digest), compressor);
   return compressor.finish();
 }
 

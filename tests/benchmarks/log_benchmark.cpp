@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "io/message_bytes.hpp"
+#include "matchers/log_request.hpp"
 #include "matchers/temporary_folder.hpp"
 #include "trunnion/io/lcm_recording.hpp"
 #include "trunnion_lcm/imu_batch_t.hpp"
@@ -111,15 +112,15 @@ void headers(const std::string& path) {
 
 void decoded(const std::string& path) {
   Sum sum;
-  read_lcm_recording(path, {}, false, sum);
+  read_lcm_recording(log_request(path, {}, false), sum);
   benchmark::DoNotOptimize(sum.sum);
 }
 
 void decoded_by_map(const std::string& path) {
   Sum sum;
-  LcmChannels channels;
+  LogChannels channels;
   channels.imu = {"IMU", std::make_shared<const MessageMap>(message_preset("bot_core.ins_t").map)};
-  read_lcm_recording(path, channels, false, sum);
+  read_lcm_recording(log_request(path, channels, false), sum);
   benchmark::DoNotOptimize(sum.sum);
 }
 

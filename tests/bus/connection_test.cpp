@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include "trunnion/bus/connection.hpp"
+#include "matchers/log_request.hpp"
 
 #include <gtest/gtest.h>
 
@@ -116,7 +117,7 @@ TEST_F(ReplayTest, ThroughTheBusALogIsWhatItIsInTheFile) {
     return bits;
   };
   calibration::Compressor from_file({});
-  io::read_lcm_recording(path_, {}, true, from_file);
+  io::read_lcm_recording(io::log_request(path_, {}, true), from_file);
 
   Connection bus(kMemory);
   calibration::Compressor from_bus({});

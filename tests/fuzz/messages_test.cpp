@@ -55,7 +55,7 @@ class Count final : public SampleSink {
 
 /// One channel under fire: its decoder, and a good message of it.
 struct Target {
-  LcmChannels channels;
+  LogChannels channels;
   bool imu = true;
   std::string seed;
 };
@@ -170,7 +170,7 @@ TEST(Messages, AMillionMutatedOnesAreDecodedOrLeftOut) {
     }
   }
   long long damaged = 0;
-  for (const LcmDecoder& decoder : decoders) damaged += decoder.damaged().records;
+  for (const LcmDecoder& decoder : decoders) damaged += decoder.damaged_records();
   const long growth = peak_kilobytes() - before;
   std::printf(
       "[ FIGURE   ] %d mutated messages of %zu types: %lld samples, %lld left out, %lld not finite, memory grew by %ld "

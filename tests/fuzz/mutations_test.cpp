@@ -10,6 +10,7 @@
 #include <functional>
 
 #include "fuzz/mutate.hpp"
+#include "matchers/log_request.hpp"
 #include "matchers/temporary_folder.hpp"
 #include "trunnion/calibration/compress.hpp"
 #include "trunnion/calibration/rests_and_turns.hpp"
@@ -61,7 +62,7 @@ TEST(Mutations, OfLogs) {
     calibration::CompressOptions options;
     options.name = path;
     calibration::Compressor compressor(options);
-    io::read_lcm_recording(path, {}, true, compressor);
+    io::read_lcm_recording(io::log_request(path, {}, true), compressor);
     static_cast<void>(compressor.finish());
   });
 }
@@ -74,14 +75,12 @@ TEST(Mutations, OfTables) {
     io::append_imu_csv(0.01 * i, {Vec3<double>(0.1, 0.2, 0.3), Vec3<double>(1, 2, 9.8)}, text);
   run("tables", text, path, [&] {
     calibration::Compressor compressor({});
-    std::string digest;
-    io::read_imu_csv(path, {}, {}, compressor, digest);
+    io::format_by_name("csv").read(io::log_request(path, {}, false), compressor);
     static_cast<void>(compressor.finish());
   });
   run("tables by hand", text, path, [&] {
     calibration::RestsAndTurns parts(path);
-    std::string digest;
-    io::read_imu_csv(path, {}, {}, parts, digest);
+    io::format_by_name("csv").read(io::log_request(path, {}, false), parts);
     static_cast<void>(parts.finish({}));
   });
 }

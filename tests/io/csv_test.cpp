@@ -10,6 +10,7 @@
 #include "matchers/refuses.hpp"
 #include "matchers/temporary_folder.hpp"
 #include "trunnion/core/units.hpp"
+#include "trunnion/io/log_format.hpp"
 
 namespace trunnion::io {
 namespace {
@@ -34,7 +35,14 @@ const char* const kHeader = "t_s,gyro_x_deg_s,gyro_y_deg_s,gyro_z_deg_s,accel_x_
 class Csv : public testing::Test {
  protected:
   Collect& read(const std::string& text, const ColumnMap& map = {}, const SensorSheet& sheet = {}) {
-    read_imu_csv(folder_.file("a.csv", text), map, sheet, collect_, digest_);
+    LogRequest request;
+    request.path = folder_.file("a.csv", text);
+    request.columns = map;
+    request.channels.sheet = sheet;
+    Sha256 digest;
+    request.digest = &digest;
+    format_by_name("csv").read(request, collect_);
+    digest_ = digest.finish();
     return collect_;
   }
   TemporaryFolder folder_;
@@ -116,7 +124,11 @@ TEST_F(Csv, AHeaderOfTwoFilesIsHeeded) {
 }
 
 TEST_F(Csv, ReadsEncoders) {
-  read_encoder_csv(folder_.file("e.csv", "t_s,azimuth_deg,pitch_rad\n1,180,0.5\n"), {}, collect_, digest_);
+  LogRequest request;
+  request.path = folder_.file("e.csv", "t_s,azimuth_deg,pitch_rad\n1,180,0.5\n");
+  request.need_imu = false;
+  request.need_encoder = true;
+  read_log(request, collect_);
   ASSERT_EQ(collect_.angles.size(), 1U);
   EXPECT_NEAR(collect_.angles[0][0], kPi, 1e-15);
   EXPECT_EQ(collect_.angles[0][1], 0.5);

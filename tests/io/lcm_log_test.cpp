@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include "trunnion/io/lcm_log.hpp"
+#include "matchers/log_request.hpp"
 
 #include <gtest/gtest.h>
 
@@ -63,7 +64,7 @@ std::string change(const TemporaryFolder& folder, const std::string& path,
 TEST(LcmRecording, ReadsBackWhatItWrote) {
   const TemporaryFolder folder;
   Collect collect;
-  const LcmLosses losses = read_lcm_recording(write_log(folder, 100), {}, true, collect);
+  const LogLosses losses = read_lcm_recording(log_request(write_log(folder, 100), {}, true), collect);
   EXPECT_EQ(losses.records, 0);
   EXPECT_EQ(losses.bytes, 0);
   ASSERT_EQ(collect.samples.size(), 100U);
@@ -97,9 +98,9 @@ TEST(LcmRecording, TellsTheTemperature) {
     log.commit();
   }
   Collect sink;
-  LcmChannels channels;
+  LogChannels channels;
   channels.sheet.counts = {{1000.0, 0.0}, {100.0, 0.0}};
-  read_lcm_recording(folder / "warm.lcm", channels, false, sink);
+  read_lcm_recording(log_request(folder / "warm.lcm", channels, false), sink);
   ASSERT_EQ(sink.celsius.size(), 6U);
   EXPECT_EQ(sink.celsius[0], 21.5);
   EXPECT_TRUE(std::isnan(sink.celsius[1]));
@@ -116,7 +117,7 @@ TEST(LcmLog, SurvivesACorruptLength) {
     for (const std::size_t record : {5U, 50U}) bytes.replace(record * kPair + 24, 4, "\x7f\xff\xff\xff");
   });
   Collect collect;
-  const LcmLosses losses = read_lcm_recording(path, {}, true, collect);
+  const LogLosses losses = read_lcm_recording(log_request(path, {}, true), collect);
   EXPECT_EQ(losses.records, 2);
   EXPECT_EQ(losses.bytes, 2 * (28 + 3 + 80));
   EXPECT_EQ(collect.samples.size(), 98U);
@@ -130,7 +131,7 @@ TEST(LcmLog, SurvivesAPlausibleWrongLength) {
     bytes.replace(5 * kPair + 24, 4, std::string("\0\0\x10\0", 4));
   });
   Collect collect;
-  EXPECT_EQ(read_lcm_recording(path, {}, true, collect).records, 1);
+  EXPECT_EQ(read_lcm_recording(log_request(path, {}, true), collect).records, 1);
   EXPECT_EQ(collect.samples.size(), 99U);
   EXPECT_EQ(collect.azimuth.size(), 100U);
 }
@@ -141,7 +142,7 @@ TEST(LcmLog, CountsTheRecordsThatAStretchOfDamageTook) {
     bytes.replace(10 * kPair, 5 * kPair, std::string(5 * kPair, 'x'));
   });
   Collect collect;
-  const LcmLosses losses = read_lcm_recording(path, {}, true, collect);
+  const LogLosses losses = read_lcm_recording(log_request(path, {}, true), collect);
   EXPECT_EQ(losses.records, 10);
   EXPECT_EQ(losses.bytes, static_cast<long long>(5 * kPair));
   EXPECT_EQ(collect.samples.size(), 95U);
@@ -152,7 +153,7 @@ TEST(LcmLog, SurvivesACutEnd) {
   const std::string path =
       change(folder, write_log(folder, 100), [](std::string& bytes) { bytes.resize(bytes.size() - 10); });
   Collect collect;
-  EXPECT_EQ(read_lcm_recording(path, {}, true, collect).records, 1);
+  EXPECT_EQ(read_lcm_recording(log_request(path, {}, true), collect).records, 1);
   EXPECT_EQ(collect.samples.size(), 100U);
   EXPECT_EQ(collect.azimuth.size(), 99U);
 }
@@ -167,7 +168,7 @@ TEST(LcmRecording, PassesOverOtherChannels) {
   log.write(2, "IMU", message);
   log.commit();
   Collect collect;
-  read_lcm_recording(folder / "log.lcm", {}, false, collect);
+  read_lcm_recording(log_request(folder / "log.lcm", {}, false), collect);
   EXPECT_EQ(collect.samples.size(), 1U);
 }
 
@@ -175,14 +176,16 @@ TEST(LcmRecording, RefusesWhatItCannotUse) {
   const TemporaryFolder folder;
   Collect collect;
   EXPECT_REFUSES(ExitCode::kInput, "cannot read: No such file",
-                 read_lcm_recording(folder / "none.lcm", {}, true, collect));
-  EXPECT_REFUSES(ExitCode::kInput, "is empty", read_lcm_recording(folder.file("empty.lcm", ""), {}, true, collect));
-  EXPECT_REFUSES(ExitCode::kInput, "bytes are damaged",
-                 read_lcm_recording(folder.file("noise.lcm", std::string(5000, '\xed')), {}, true, collect));
-  LcmChannels other;
+                 read_lcm_recording(log_request(folder / "none.lcm", {}, true), collect));
+  EXPECT_REFUSES(ExitCode::kInput, "is empty",
+                 read_lcm_recording(log_request(folder.file("empty.lcm", ""), {}, true), collect));
+  EXPECT_REFUSES(
+      ExitCode::kInput, "bytes are damaged",
+      read_lcm_recording(log_request(folder.file("noise.lcm", std::string(5000, '\xed')), {}, true), collect));
+  LogChannels other;
   other.encoder.name = "TABLE";
   EXPECT_REFUSES(ExitCode::kInput, "no usable message on the encoder channel 'TABLE'",
-                 read_lcm_recording(write_log(folder, 10), other, true, collect));
+                 read_lcm_recording(log_request(write_log(folder, 10), other, true), collect));
   const std::size_t encoder_record = 2 * kPair + 28 + 3 + 80;
   const auto foreign = [&](int messages) {
     return change(folder, write_log(folder, messages),
@@ -191,9 +194,9 @@ TEST(LcmRecording, RefusesWhatItCannotUse) {
   EXPECT_REFUSES(ExitCode::kInput,
                  "byte " + std::to_string(encoder_record) +
                      ": channel ENCODER: holds a message of another type, fingerprint 0x0000000000000000",
-                 read_lcm_recording(foreign(10), {}, true, collect));
+                 read_lcm_recording(log_request(foreign(10), {}, true), collect));
   // one in two thousand is damage, and counted
-  EXPECT_EQ(read_lcm_recording(foreign(1000), {}, true, collect).records, 1);
+  EXPECT_EQ(read_lcm_recording(log_request(foreign(1000), {}, true), collect).records, 1);
 }
 
 TEST(LcmRecording, RefusesValuesThatAreNotFinite) {
@@ -205,9 +208,9 @@ TEST(LcmRecording, RefusesValuesThatAreNotFinite) {
     });
   };
   const std::string where = "log.lcm: byte " + std::to_string(3 * kPair) + ": angular_rate[1]: is not finite";
-  EXPECT_REFUSES(ExitCode::kInput, where, read_lcm_recording(spoilt(std::nan("")), {}, true, collect));
+  EXPECT_REFUSES(ExitCode::kInput, where, read_lcm_recording(log_request(spoilt(std::nan("")), {}, true), collect));
   EXPECT_REFUSES(ExitCode::kInput, where,
-                 read_lcm_recording(spoilt(std::numeric_limits<double>::infinity()), {}, true, collect));
+                 read_lcm_recording(log_request(spoilt(std::numeric_limits<double>::infinity()), {}, true), collect));
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <lcm/lcm-cpp.hpp>
 #include <vector>
 
+#include "matchers/log_request.hpp"
 #include "matchers/refuses.hpp"
 #include "matchers/temporary_folder.hpp"
 #include "trunnion/io/gnss_messages.hpp"
@@ -230,7 +231,7 @@ TEST(LcmPeer, WeReadItsBatches) {
     peer.writeEvent(&event);
   }
   Collect collect;
-  read_lcm_recording(folder / "theirs.lcm", {}, false, collect);
+  read_lcm_recording(log_request(folder / "theirs.lcm", {}, false), collect);
   ASSERT_EQ(collect.samples.size(), 8U);
   EXPECT_EQ(collect.stamps[3], 400);
   EXPECT_EQ(collect.samples[3].w, Vec3<double>(3, 6, 9));

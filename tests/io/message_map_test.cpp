@@ -4,6 +4,7 @@
 /// Messages of other people's types through a run file's `channels` into samples.
 
 #include "trunnion/io/message_map.hpp"
+#include "trunnion/io/lcm_recording.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -35,7 +36,7 @@ class Collect final : public SampleSink {
 class MessageMapTest : public testing::Test {
  protected:
   /// The channels of a run file with these lines.
-  LcmChannels channels(const std::string& lines, const std::string& sheet = "") {
+  LogChannels channels(const std::string& lines, const std::string& sheet = "") {
     std::string run = "format: trunnion-run/1\nsite: {latitude_deg: 43.88}\nrecordings: [{log: a.lcm}]\n" + lines;
     if (!sheet.empty()) {
       static_cast<void>(folder_.file("sheet.yaml", "format: trunnion-sheet/1\nmodel: X\n" + sheet));
@@ -44,7 +45,7 @@ class MessageMapTest : public testing::Test {
     return read_run_file(folder_.file("run.yaml", run)).channels;
   }
   /// The message through a decoder; @return what is wrong with it
-  std::string decode(const LcmChannels& channels, const std::string& message, bool imu = true) {
+  std::string decode(const LogChannels& channels, const std::string& message, bool imu = true) {
     sink_.stamps.clear();
     sink_.samples.clear();
     sink_.angles.clear();
@@ -65,7 +66,7 @@ class MessageMapTest : public testing::Test {
 };
 
 TEST_F(MessageMapTest, APresetKnowsChannelFieldsAndUnits) {
-  const LcmChannels c = channels("channels: {imu: {preset: bot_core.ins_t}}\n");
+  const LogChannels c = channels("channels: {imu: {preset: bot_core.ins_t}}\n");
   EXPECT_EQ(c.imu.name, "MICROSTRAIN_INS");
   MessageBytes m(fingerprint("bot_core.ins_t"));
   m.i64(1600000000123456).i64(42);
@@ -79,7 +80,7 @@ TEST_F(MessageMapTest, APresetKnowsChannelFieldsAndUnits) {
 
 TEST_F(MessageMapTest, IncrementsInBatchesThatOverlapAreTakenOnce) {
   const std::string sheet = "rate_hz: 1000\ngyroscope: {}\naccelerometer: {}\n";
-  const LcmChannels c = channels("channels: {imu: {preset: bot_core.kvh_raw_imu_batch_t}}\n", sheet);
+  const LogChannels c = channels("channels: {imu: {preset: bot_core.kvh_raw_imu_batch_t}}\n", sheet);
   const auto batch = [&](int first, int n) {
     MessageBytes m(fingerprint("bot_core.kvh_raw_imu_batch_t"));
     m.i64(5).i32(n);
@@ -109,7 +110,7 @@ TEST_F(MessageMapTest, IncrementsInBatchesThatOverlapAreTakenOnce) {
 }
 
 TEST_F(MessageMapTest, SplitTimeIsExact) {
-  const LcmChannels c = channels("channels: {imu: {channel: 'imu#sensor_msgs.Imu', preset: sensor_msgs.Imu}}\n");
+  const LogChannels c = channels("channels: {imu: {channel: 'imu#sensor_msgs.Imu', preset: sensor_msgs.Imu}}\n");
   MessageBytes m(fingerprint("sensor_msgs.Imu"));
   m.i32(3).i32(1700000000).i32(123456789).text("imu_link");
   for (int i = 0; i < 4 + 9; ++i) m.f64(-1);
@@ -124,7 +125,7 @@ TEST_F(MessageMapTest, SplitTimeIsExact) {
 }
 
 TEST_F(MessageMapTest, WithoutATimeTheLogsIsTaken) {
-  const LcmChannels c = channels("channels: {imu: {preset: cheetah.vectornav_lcmt}}\n");
+  const LogChannels c = channels("channels: {imu: {preset: cheetah.vectornav_lcmt}}\n");
   MessageBytes m(fingerprint("cheetah.vectornav_lcmt"));
   for (int i = 0; i < 10; ++i) m.f32(0.5F * static_cast<float>(i));
   EXPECT_EQ(decode(c, m.bytes()), "");
@@ -133,7 +134,7 @@ TEST_F(MessageMapTest, WithoutATimeTheLogsIsTaken) {
 }
 
 TEST_F(MessageMapTest, JointsAreFoundByName) {
-  const LcmChannels c = channels(
+  const LogChannels c = channels(
       "channels: {encoder: {channel: JOINTS, preset: bot_core.joint_state_t, angle: {joints: [base, arm]}}}\n");
   const auto message = [&](std::initializer_list<const char*> names) {
     MessageBytes m(fingerprint("bot_core.joint_state_t"));
@@ -159,7 +160,7 @@ class OwnTypes : public MessageMapTest {
 };
 
 TEST_F(OwnTypes, FieldsUnitsAndTicksAreTheRunFiles) {
-  const LcmChannels c = channels(std::string(kTypes) +
+  const LogChannels c = channels(std::string(kTypes) +
                                      "channels:\n  imu: {channel: A, type: own.imu_t, time: {field: t, unit: s}, gyro: "
                                      "{fields: [gx, gy, gz], unit: deg/s}, "
                                      "accel: {field: a, unit: counts}}\n"
@@ -188,7 +189,7 @@ TEST_F(OwnTypes, AMessageWhosePartsDoNotAgreeIsLeftOut) {
       "channels: {imu: {channel: A, type: own.imu_t, time: {field: t, unit: s}, gyro: {fields: [gx, gy, gz], unit: "
       "rad/s}, accel: "
       "{field: a, unit: g}}}\n";
-  const LcmChannels c = channels(kTypes + imu);
+  const LogChannels c = channels(kTypes + imu);
   LcmTypes types;
   types.add(folder_ / "own.lcm");
   MessageBytes two(types.fingerprint("own.imu_t"));

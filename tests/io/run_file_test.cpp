@@ -30,7 +30,7 @@ TEST_F(RunFileTest, ResolvesPathsAgainstItselfAndFillsInTheDefaults) {
   const RunFile run = read(kRun);
   EXPECT_EQ(run.rig, folder_ / "table.urdf");
   ASSERT_EQ(run.recordings.size(), 1U);
-  EXPECT_EQ(run.recordings[0].lcm, folder_ / "one.lcm");
+  EXPECT_EQ(run.recordings[0].log, folder_ / "one.lcm");
   EXPECT_EQ(run.site.gravity, normal_gravity(43.88 * kRadPerDeg, 220.0));
   EXPECT_EQ(run.site.gravity_sigma, 3e-4);
   EXPECT_TRUE(run.cubic && run.g_sensitivity && !run.quadratic && run.bias_per_recording && run.estimate_clock_offset);

@@ -3,6 +3,7 @@
 /// @file
 /// Samples in text tables: columns found by a header name with the unit in it, or mapped by name or index with a unit.
 ///
+/// One table of unit, encoders or both is read as any log is (log_format.hpp).
 /// Names understood without a map: t_s, t_ms, t_us, t_ns, utime; gyro_x_rad_s, gyro_x_deg_s, gyro_x_deg_h;
 /// accel_x_m_s2, accel_x_g, accel_x_mg; azimuth_rad, azimuth_deg, pitch_rad, pitch_deg. Separators: comma, semicolon,
 /// tab or blanks. Numbers are read in the C locale.
@@ -36,18 +37,10 @@ bool unit_fits(const std::string& quantity, const std::string& unit, std::string
 /// One @p unit of @p quantity in SI; zero for a unit that does not measure it, and for counts.
 double unit_in_si(const std::string& quantity, const std::string& unit);
 
-/// Rows of t, three rates and three specific forces into @p sink.
-/// @throws Error (input) naming file, line and column
-void read_imu_csv(const std::string& path, const ColumnMap& columns, const SensorSheet& sheet, SampleSink& sink,
-                  std::string& digest);
-
-/// The same from two files with equal stamps, gyro and accelerometers apart; in both the map's indices count from the
+/// Samples from two files with equal stamps, gyro and accelerometers apart; in both the map's indices count from the
 /// file's own first column, and without a map columns 0 to 3 are t [s], x, y, z in counts.
 void read_split_csv(const std::string& gyro_path, const std::string& accel_path, const ColumnMap& columns,
                     const SensorSheet& sheet, SampleSink& sink, std::string& gyro_digest, std::string& accel_digest);
-
-/// Rows of t, azimuth and pitch into @p sink.
-void read_encoder_csv(const std::string& path, const ColumnMap& columns, SampleSink& sink, std::string& digest);
 
 /// Any columns by their header names with the unit in them: "t", "angle", "lat", "lon" (_rad, _deg), "h" (_m), ... in
 /// SI.
@@ -57,7 +50,7 @@ void read_columns_csv(const std::string& path, const std::vector<std::string>& q
                       const std::function<void(const double*)>& row, std::string& digest);
 
 /// Writes samples as CSV with the header t_s,gyro_x_rad_s,...,accel_z_m_s2.
-std::string imu_csv_header();
+std::string imu_csv_header(bool temperature = false);
 void append_imu_csv(double t, const InertialSample<double>& sample, std::string& out);
 
 }  // namespace trunnion::io

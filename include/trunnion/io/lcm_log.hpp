@@ -12,14 +12,16 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "trunnion/io/digest.hpp"
 #include "trunnion/io/whole_file.hpp"
 
 namespace trunnion::io {
+
+class ByteStream;
 
 struct LcmEvent {
   std::int64_t number = 0;
@@ -48,23 +50,15 @@ class LcmLogReader {
 
   [[nodiscard]] long long lost_records() const { return lost_records_; }
   [[nodiscard]] long long lost_bytes() const { return lost_bytes_; }
-  [[nodiscard]] std::int64_t size() const { return size_; }
-  [[nodiscard]] const std::string& path() const { return path_; }
+  [[nodiscard]] std::int64_t size() const;
+  [[nodiscard]] const std::string& path() const;
 
  private:
-  bool have(std::size_t bytes);
+  void lose(std::size_t bytes);
   bool skip_damage();
   [[nodiscard]] bool plausible_header(std::size_t at) const;
 
-  std::string path_;
-  Sha256* digest_;
-  int descriptor_ = -1;
-  std::int64_t size_ = 0;
-  std::vector<char> buffer_;
-  std::size_t begin_ = 0;
-  std::size_t end_ = 0;
-  std::int64_t offset_ = 0;  // of buffer_[0] in the file
-  bool at_end_ = false;
+  std::unique_ptr<ByteStream> stream_;
   bool synchronised_ = true;
   std::int64_t last_number_ = -1;
   long long lost_records_ = 0;

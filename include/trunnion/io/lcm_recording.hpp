@@ -7,7 +7,6 @@
 
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
@@ -15,10 +14,10 @@
 #include <vector>
 
 #include "trunnion/core/error.hpp"
-#include "trunnion/io/digest.hpp"
 #include "trunnion/io/lcm_log.hpp"
+#include "trunnion/io/log_format.hpp"
 #include "trunnion/io/message_map.hpp"
-#include "trunnion/io/sensor_sheet.hpp"
+#include "trunnion/io/sample_intake.hpp"
 #include "trunnion/positions/sample_sink.hpp"
 #include "trunnion/positions/sequence_watch.hpp"
 #include "trunnion/strapdown/navigator.hpp"
@@ -33,19 +32,6 @@ inline constexpr std::uint64_t kIndexFingerprint = 0x724d29f1847a9b61ULL;
 inline constexpr std::uint64_t kNavigationFingerprint = 0x95dc36850fa1a09cULL;
 inline constexpr std::uint64_t kImuCountsFingerprint = 0x9ecd1788d10210a8ULL;
 
-/// Which channels are read, and what their messages are.
-struct LcmChannels {
-  ChannelChoice imu{"IMU", nullptr};
-  ChannelChoice encoder{"ENCODER", nullptr};
-  SensorSheet sheet;  ///< what a count is, and the period of a sample, where messages do not say
-};
-
-struct LcmLosses {
-  long long records = 0;  ///< damaged in the file
-  long long bytes = 0;
-  long long samples = 0;  ///< of the unit, that its sequence numbers miss
-};
-
 /// Decodes messages of one log into a sink. A message that cannot be decoded is counted as damage, unless there are too
 /// many of them: then the first fault is thrown, an Error (input) with the byte and the field. Values that are not
 /// finite are refused at once.
@@ -54,7 +40,7 @@ class LcmDecoder {
   /// @param source of the messages, for messages to people: a file, or the address of a bus
   /// @param sink must outlive the decoder
   /// @throws Error (input) for a map that does not fit its type
-  LcmDecoder(std::string source, SampleSink& sink, const LcmChannels& channels = {});
+  LcmDecoder(std::string source, SampleSink& sink, const LogChannels& channels = {});
 
   /// imu_t, imu_batch_t or imu_counts_t; with a map, its type.
   void imu(const LcmEvent& event);
@@ -62,50 +48,42 @@ class LcmDecoder {
   void encoder(const LcmEvent& event);
 
   /// Call after the last message. @throws Error (input) when more than one message in a thousand could not be decoded
-  void finish() const;
+  void finish() const { intake_.finish(); }
 
-  [[nodiscard]] long long samples() const { return samples_; }
-  [[nodiscard]] long long encoders() const { return encoders_; }
+  [[nodiscard]] long long samples() const { return intake_.samples(); }
+  [[nodiscard]] long long encoders() const { return intake_.encoders(); }
   /// Messages, and their bytes, that could not be decoded.
-  [[nodiscard]] const LcmLosses& damaged() const { return damaged_; }
+  [[nodiscard]] long long damaged_records() const { return intake_.damaged_records(); }
+  [[nodiscard]] long long damaged_bytes() const { return intake_.damaged_bytes(); }
   /// What is wrong with the first of them; empty where none is.
-  [[nodiscard]] std::string first_fault() const { return first_fault_ ? first_fault_->what() : std::string(); }
+  [[nodiscard]] std::string first_fault() const { return intake_.first_fault(); }
   [[nodiscard]] const SequenceWatch& imu_sequence() const { return imu_sequence_; }
   [[nodiscard]] const SequenceWatch& encoder_sequence() const { return encoder_sequence_; }
 
  private:
-  void damage(const LcmEvent& event, const Error& fault);
+  void damage(const LcmEvent& event, const std::string& field, const std::string& what);
+  void damage(const LcmEvent& event, const std::string& what);
   void deliver(const LcmEvent& event, std::int64_t utime, const InertialSample<double>& sample);
-  void doubt(const LcmEvent& event, const InertialSample<double>& sample);
   void batch(const LcmEvent& event);
-  void tell_temperature(double celsius);
   void mapped_imu(const LcmEvent& event);
   void deliver_angles(const LcmEvent& event, std::int64_t utime, const std::array<double, 2>& angle);
   [[nodiscard]] Error fault(const LcmEvent& event, const std::string& field, const std::string& what) const;
-  [[nodiscard]] Error foreign(const LcmEvent& event, std::uint64_t fingerprint, const std::string& expected) const;
+  [[nodiscard]] std::string foreign(const LcmEvent& event, std::uint64_t fingerprint,
+                                    const std::string& expected) const;
 
   std::string source_;
-  SampleSink& sink_;
+  SampleIntake intake_;
   UnitScale<double> counts_;
   std::optional<MappedMessages> imu_map_;
   std::optional<MappedMessages> encoder_map_;
   std::vector<MappedMessages::Sample> mapped_;
   SequenceWatch imu_sequence_;
   SequenceWatch encoder_sequence_;
-  bool told_temperature_ = false;
-  long long samples_ = 0;
-  long long encoders_ = 0;
-  LcmLosses damaged_;
-  std::optional<Error> first_fault_;
 };
 
-using Progress = std::function<void(double fraction)>;
-
 /// Reads a log into @p sink: the IMU channel and the encoder channel; other channels are passed over.
-/// @param need_encoder whether a log without encoder readings is refused
 /// @throws Error (input) for a missing, empty or useless log, another type's fingerprint, or values that are not finite
-LcmLosses read_lcm_recording(const std::string& path, const LcmChannels& channels, bool need_encoder, SampleSink& sink,
-                             Sha256* digest = nullptr, const Progress& progress = {});
+LogLosses read_lcm_recording(const LogRequest& request, SampleSink& sink);
 
 /// Puts other samples into a message of type imu_t or imu_batch_t that was decoded into as many; the rest stays.
 /// @return false for a message of another type, which stays as it is

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "trunnion/io/csv.hpp"
-#include "trunnion/io/lcm_recording.hpp"
+#include "trunnion/io/log_format.hpp"
 #include "trunnion/positions/entry.hpp"
 #include "trunnion/positions/soak.hpp"
 #include "trunnion/positions/table_plan.hpp"
@@ -22,14 +22,14 @@ namespace trunnion::io {
 struct RecordingFiles {
   int line = 0;       ///< of the run file
   std::string mount;  ///< empty by hand
-  std::string lcm;    ///< an LCM log, or empty
-  std::string imu;    ///< a CSV, or empty
+  std::string log;    ///< all in one, of any format; or empty
+  std::string imu;    ///< unit and encoders in files of their own, of any format; or empty
   std::string encoder;
-  std::string gyro;  ///< gyro and accelerometers in files of their own, or empty
+  std::string gyro;  ///< gyro and accelerometers in tables of their own; or empty
   std::string accel;
 
   /// For messages: the first file.
-  [[nodiscard]] const std::string& name() const { return !lcm.empty() ? lcm : !imu.empty() ? imu : gyro; }
+  [[nodiscard]] const std::string& name() const { return !log.empty() ? log : !imu.empty() ? imu : gyro; }
 };
 
 /// A verdict's limits on one kind of entry, in the unit of its key; negative: none.
@@ -59,7 +59,7 @@ struct RunFile {
   int temperature = 0;  ///< order
   EntryLimits refuse_above = default_refuse_above();
   std::array<EntryVerdict, kEntries> limits;
-  LcmChannels channels;
+  LogChannels channels;
   std::vector<std::string> lcm_types;  ///< definitions, files or folders
   ColumnMap columns;
   PlanRequest plan;   ///< what a live calibration asks of each mount
@@ -71,8 +71,11 @@ struct RunFile {
 /// @throws Error (input) naming file, line and field
 RunFile read_run_file(const std::string& path);
 
+/// How a run reads a log: its channels, columns, joints, counts.
+LogRequest log_request(const RunFile& run, const std::string& path);
+
 /// Reads one recording into @p sink. @param inputs takes path and SHA-256 of each file
-LcmLosses read_recording(const RunFile& run, const RecordingFiles& files, SampleSink& sink,
+LogLosses read_recording(const RunFile& run, const RecordingFiles& files, SampleSink& sink,
                          std::vector<std::pair<std::string, std::string>>& inputs, const Progress& progress = {});
 
 }  // namespace trunnion::io

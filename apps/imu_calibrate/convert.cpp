@@ -1,0 +1,160 @@
+// SPDX-FileCopyrightText: 2026 the trunnion authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include "../terminal.hpp"
+#include "command.hpp"
+#include "recordings.hpp"
+#include "trunnion/core/error.hpp"
+#include "trunnion/io/log_format.hpp"
+#include "trunnion/io/run_file.hpp"
+
+namespace trunnion::app {
+namespace {
+
+struct Options {
+  std::string input;
+  std::string output;
+  std::string format;
+  std::string channel;
+  int of_run = 0;
+};
+
+struct Reading {
+  std::int64_t utime;
+  double azimuth;
+  double pitch;
+};
+
+class Readings final : public SampleSink {
+ public:
+  void imu(std::int64_t, const InertialSample<double>&) override {}
+  void encoder(std::int64_t utime, double azimuth, double pitch) override { all.push_back({utime, azimuth, pitch}); }
+  std::vector<Reading> all;
+};
+
+/// Passes on to a writer; readings that come from a file of their own are put among the samples by their stamps.
+class Converted final : public SampleSink {
+ public:
+  Converted(io::LogWriter& writer, std::vector<Reading> apart) : writer_(writer), apart_(std::move(apart)) {}
+  void imu(std::int64_t utime, const InertialSample<double>& sample) override {
+    while (next_ < apart_.size() && apart_[next_].utime <= utime) pass_reading();
+    writer_.imu(utime, sample);
+    ++samples;
+  }
+  void temperature(double celsius) override {
+    writer_.temperature(celsius);
+    has_temperature = true;
+  }
+  void encoder(std::int64_t utime, double azimuth, double pitch) override {
+    writer_.encoder(utime, azimuth, pitch);
+    ++readings;
+  }
+  void finish() {
+    while (next_ < apart_.size()) pass_reading();
+  }
+
+  long long samples = 0;
+  long long readings = 0;
+  bool has_temperature = false;
+
+ private:
+  void pass_reading() {
+    const Reading& r = apart_[next_++];
+    encoder(r.utime, r.azimuth, r.pitch);
+  }
+
+  io::LogWriter& writer_;
+  std::vector<Reading> apart_;
+  std::size_t next_ = 0;
+};
+
+/// By the name that is stated, else by the extension of the output. @throws Error (usage)
+const io::LogFormat& format_to_write(const Options& o) {
+  if (!o.format.empty()) return io::format_by_name(o.format);
+  std::string writable;
+  for (const io::LogFormat& format : io::log_formats()) {
+    if (format.write == nullptr) continue;
+    if (std::filesystem::path(o.output).extension() == format.extension) return format;
+    writable += std::string(writable.empty() ? "" : ", ") + format.extension;
+  }
+  throw Error(ExitCode::kUsage, o.output + ": no format that is written has this extension (" + writable +
+                                    "): rename it, or state --format");
+}
+
+void convert(const Options& o) {
+  const io::LogFormat& format = format_to_write(o);
+  auto [run, files] = one_recording(o.input, o.channel, o.of_run);
+  std::vector<std::string> sources = files_of(run);
+  sources.insert(sources.end(), {o.input});
+  keep_inputs(o.output, sources);
+  Readings apart;
+  io::LogLosses lost;
+  if (!files.encoder.empty()) {
+    io::LogRequest request = io::log_request(run, files.encoder);
+    request.need_imu = false;
+    request.need_encoder = true;
+    lost = io::read_log(request, apart);
+    files.encoder.clear();
+  }
+  const std::unique_ptr<io::LogWriter> writer = format.write(o.output);
+  Converted sink(*writer, std::move(apart.all));
+  std::vector<std::pair<std::string, std::string>> digests;
+  ProgressLine progress;
+  const io::LogLosses losses = io::read_recording(run, files, sink, digests, [&](double fraction) {
+    progress.show("converting " + std::to_string(static_cast<int>(100.0 * fraction)) + " %");
+  });
+  sink.finish();
+  writer->commit();
+  std::string made;
+  for (const std::string& file : writer->files()) made += (made.empty() ? "" : ", ") + file;
+  std::printf("%s: %lld samples", made.c_str(), sink.samples);
+  if (sink.readings > 0) std::printf(", %lld encoder readings", sink.readings);
+  std::printf("\n");
+  if (sink.has_temperature && !writer->holds_temperature())
+    std::fprintf(stderr, "%s: the temperature is left out: this format has no place for it\n", o.output.c_str());
+  const long long records = losses.records + lost.records;
+  if (records > 0)
+    std::fprintf(stderr, "%lld damaged records, %lld bytes passed over\n", records, losses.bytes + lost.bytes);
+}
+
+}  // namespace
+
+void add_convert(CLI::App& app, ExitCode& exit_code) {
+  CLI::App* command = app.add_subcommand("convert", "Write a recording in another format, in SI units");
+  auto o = std::make_shared<Options>();
+  std::vector<std::string> names;
+  std::string readable;
+  for (const io::LogFormat& format : io::log_formats()) {
+    readable += std::string(readable.empty() ? "" : ", ") + format.title;
+    if (format.write != nullptr) names.emplace_back(format.name);
+  }
+  command
+      ->add_option("input", o->input,
+                   "A log, told by what is in it: " + readable +
+                       "; or the run file of a recording (channels, columns, "
+                       "raw counts), with --of-run")
+      ->required();
+  command
+      ->add_option("-o,--output", o->output,
+                   "File to write; as a table the encoders' readings go beside it, to NAME_encoder.csv")
+      ->required();
+  command->add_option("--format", o->format, "To write; default by the output's extension")
+      ->check(CLI::IsMember(names));
+  command->add_option("--channel", o->channel,
+                      "Channel or topic of the unit; default IMU in an LCM log, else the only one");
+  command->add_option("--of-run", o->of_run, "Of a run file with several: the recording to convert, from 1")
+      ->check(CLI::Range(1, 1000));
+  command->footer("Example:\n  imu_calibrate convert recording.mcap -o recording.lcm");
+  command->callback([o, &exit_code] {
+    convert(*o);
+    exit_code = ExitCode::kDone;
+  });
+}
+
+}  // namespace trunnion::app

@@ -1,0 +1,100 @@
+// SPDX-FileCopyrightText: 2026 the trunnion authors
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// What every reader does with a sample, whatever it read it from: refuses what is no number, counts what is beyond any
+/// sensor as damage, and says in the end whether there was too much of it.
+
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "trunnion/core/error.hpp"
+#include "trunnion/positions/sample_sink.hpp"
+
+namespace trunnion::io {
+
+class SampleIntake {
+ public:
+  /// @param sink must outlive the intake
+  explicit SampleIntake(SampleSink& sink) : sink_(sink) {}
+
+  /// @param fault makes an Error of a field and of what is wrong with it: it knows the place
+  template <class Fault>
+  void imu(std::int64_t utime, const InertialSample<double>& sample, std::size_t bytes, const Fault& fault) {
+    const double w = std::abs(sample.w(0)) + std::abs(sample.w(1)) + std::abs(sample.w(2));
+    const double f = std::abs(sample.f(0)) + std::abs(sample.f(1)) + std::abs(sample.f(2));
+    if (!(w + f < kLargestReading)) {
+      for (int i = 0; i < 6; ++i) {
+        const double value = i < 3 ? sample.w(i) : sample.f(i - 3);
+        const std::string field = (i < 3 ? "angular_rate[" : "specific_force[") + std::to_string(i % 3) + "]";
+        if (!std::isfinite(value)) throw fault(field, "is not finite");
+        if (std::abs(value) >= kLargestReading / 6.0) return damage(bytes, fault(field, "is beyond any sensor"));
+      }
+    }
+    ++samples_;
+    sink_.imu(utime, sample);
+  }
+
+  template <class Fault>
+  void encoder(std::int64_t utime, const std::array<double, 2>& angle, std::size_t bytes, const Fault& fault) {
+    for (std::size_t i = 0; i < angle.size(); ++i) {
+      if (!std::isfinite(angle[i])) throw fault("angle[" + std::to_string(i) + "]", "is not finite");
+      if (std::abs(angle[i]) > kLargestAngle) return damage(bytes, fault("angle", "is beyond a million turns"));
+    }
+    ++encoders_;
+    sink_.encoder(utime, angle[0], angle[1]);
+  }
+
+  /// What is no temperature is not known: not a number.
+  static double known_temperature(double celsius) {
+    return celsius > kColdest && celsius < kHottest ? celsius : std::nan("");
+  }
+
+  void temperature(double celsius) {
+    celsius = known_temperature(celsius);
+    const bool known = std::isfinite(celsius);
+    if (!known && !told_temperature_) return;
+    told_temperature_ = known;
+    sink_.temperature(celsius);
+  }
+
+  void damage(std::size_t bytes, const Error& fault) {
+    if (!first_fault_) first_fault_ = fault;
+    ++damaged_records_;
+    damaged_bytes_ += static_cast<long long>(bytes);
+  }
+
+  /// Call after the last. @throws Error, the first fault, when more than one in a thousand is damaged
+  void finish() const {
+    const auto whole = static_cast<double>(samples_ + encoders_);
+    if (first_fault_ && static_cast<double>(damaged_records_) > kTolerableDamage * whole) throw *first_fault_;
+  }
+
+  [[nodiscard]] long long samples() const { return samples_; }
+  [[nodiscard]] long long encoders() const { return encoders_; }
+  [[nodiscard]] long long damaged_records() const { return damaged_records_; }
+  [[nodiscard]] long long damaged_bytes() const { return damaged_bytes_; }
+  /// What is wrong with the first that is damaged; empty where none is.
+  [[nodiscard]] std::string first_fault() const { return first_fault_ ? first_fault_->what() : std::string(); }
+
+ private:
+  static constexpr double kTolerableDamage = 1e-3;  // what cannot be used, against what can
+  static constexpr double kLargestReading = 1e6;    // rad/s, m/s^2
+  static constexpr double kLargestAngle = 1e7;      // rad
+  static constexpr double kColdest = -273.15;       // degC
+  static constexpr double kHottest = 1000.0;
+
+  SampleSink& sink_;
+  bool told_temperature_ = false;
+  long long samples_ = 0;
+  long long encoders_ = 0;
+  long long damaged_records_ = 0;
+  long long damaged_bytes_ = 0;
+  std::optional<Error> first_fault_;
+};
+
+}  // namespace trunnion::io

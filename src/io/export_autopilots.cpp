@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: 2026 the trunnion authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// PX4 and ArduPilot: corrected f = (measured f - offset) scale, axis by axis, corrected w = measured w - offset; single
+// precision, in the axes of the sensor, before it is turned into those of the board.
+
+#include <Eigen/LU>
+#include <cmath>
+#include <cstdio>
+
+#include "export_formats.hpp"
+
+namespace trunnion::io {
+namespace {
+
+constexpr double kSingle = 6e-8;
+
+struct Parameters {
+  Vec3<double> accel_offset;
+  Vec3<double> accel_scale;
+  Vec3<double> gyro_offset;
+};
+
+Vec3<double> single(const Vec3<double>& v) { return v.cast<float>().cast<double>(); }
+
+/// A diagonal in place of the inverse matrix: its own.
+Parameters parameters_of(const InertialUnit<double>& unit) {
+  return {single(unit.accel.bias), single(unit.accel.matrix().inverse().diagonal()), single(unit.gyro.bias)};
+}
+
+std::string nine_digits(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.9g", value);
+  return text.data();
+}
+
+Exported exported(const ExportRequest& request, const Parameters& p) {
+  Exported out;
+  out.text = commented(request, "#");
+  out.correct = [p](const InertialSample<double>& y) {
+    return InertialSample<double>{y.w - p.gyro_offset, (y.f - p.accel_offset).cwiseProduct(p.accel_scale)};
+  };
+  out.advice.emplace_back(
+      "it holds for readings as the driver gives them: those of a log have the vehicle's own offsets and scales in "
+      "them, unless they were 0 and 1");
+  return out;
+}
+
+Exported px4(const ExportRequest& request) {
+  const Parameters p = parameters_of(request.unit);
+  Exported out = exported(request, p);
+  const auto line = [&](const std::string& name, const std::string& value, const char* type) {
+    out.text += "1\t1\t" + name + "\t" + value + "\t" + type + "\n";
+  };
+  out.text += "#\n# Vehicle-Id Component-Id Name Value Type\n";
+  if (request.accel_id != 0) line("CAL_ACC0_ID", std::to_string(request.accel_id), "6");
+  if (request.gyro_id != 0) line("CAL_GYRO0_ID", std::to_string(request.gyro_id), "6");
+  if (request.accel_id == 0 || request.gyro_id == 0)
+    out.advice.emplace_back(
+        "PX4 takes the numbers for the device whose id CAL_ACC0_ID and CAL_GYRO0_ID hold: state --accel-id and "
+        "--gyro-id, or see that they are there");
+  constexpr const char* kAxes = "XYZ";
+  for (int i = 0; i < 3; ++i) line(std::string("CAL_ACC0_") + kAxes[i] + "OFF", nine_digits(p.accel_offset(i)), "9");
+  for (int i = 0; i < 3; ++i) line(std::string("CAL_ACC0_") + kAxes[i] + "SCALE", nine_digits(p.accel_scale(i)), "9");
+  for (int i = 0; i < 3; ++i) line(std::string("CAL_GYRO0_") + kAxes[i] + "OFF", nine_digits(p.gyro_offset(i)), "9");
+  out.advice.emplace_back("restart the vehicle after loading: several versions pass over a change below 0.01");
+  return out;
+}
+
+Exported ardupilot(const ExportRequest& request) {
+  const Parameters p = parameters_of(request.unit);
+  Exported out = exported(request, p);
+  const auto line = [&](const std::string& name, double value) { out.text += name + "," + nine_digits(value) + "\n"; };
+  constexpr const char* kAxes = "XYZ";
+  for (int i = 0; i < 3; ++i) line(std::string("INS_ACCOFFS_") + kAxes[i], p.accel_offset(i));
+  for (int i = 0; i < 3; ++i) line(std::string("INS_ACCSCAL_") + kAxes[i], p.accel_scale(i));
+  for (int i = 0; i < 3; ++i) line(std::string("INS_GYROFFS_") + kAxes[i], p.gyro_offset(i));
+  line("INS_GYR_CAL", 0.0);  // else the offsets of the gyros are measured anew at every start
+  if (p.accel_offset.cwiseAbs().maxCoeff() > 3.5 || p.accel_scale.minCoeff() < 0.8 || p.accel_scale.maxCoeff() > 1.2)
+    out.advice.emplace_back(
+        "ArduPilot documents offsets to 3.5 m/s^2 and scales from 0.8 to 1.2, and these are beyond");
+  return out;
+}
+
+}  // namespace
+
+const ExportFormat kPx4Export = {"px4", "PX4 parameters", ".params", kSingle, false, false, px4};
+const ExportFormat kArduPilotExport = {"ardupilot", "ArduPilot parameters", ".param", kSingle, false, false, ardupilot};
+
+}  // namespace trunnion::io

@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: 2026 the trunnion authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "trunnion/io/log_format.hpp"
+
+#include <algorithm>
+
+#include "byte_stream.hpp"
+#include "log_formats.hpp"
+#include "trunnion/io/lcm_log.hpp"
+#include "trunnion/io/lcm_recording.hpp"
+
+namespace trunnion::io {
+namespace {
+
+constexpr std::size_t kHead = 4096;  // bytes of a file that its format is judged by
+
+/// Samples as imu_t on IMU, readings as encoder_t on ENCODER.
+class LcmSampleWriter final : public LogWriter {
+ public:
+  explicit LcmSampleWriter(const std::string& path) : path_(path), log_(path) {}
+  void imu(std::int64_t utime, const InertialSample<double>& sample) override {
+    encode_imu(utime, samples_++, sample, message_, celsius_);
+    log_.write(utime, LogChannels().imu_channel(), message_);
+  }
+  void temperature(double celsius) override { celsius_ = celsius; }
+  void encoder(std::int64_t utime, double azimuth, double pitch) override {
+    encode_encoder(utime, readings_++, azimuth, pitch, message_);
+    log_.write(utime, LogChannels().encoder_channel(), message_);
+  }
+  void commit() override { log_.commit(); }
+  [[nodiscard]] std::vector<std::string> files() const override { return {path_}; }
+
+ private:
+  std::string path_;
+  LcmLogWriter log_;
+  std::string message_;
+  std::int64_t samples_ = 0;
+  std::int64_t readings_ = 0;
+  double celsius_ = std::numeric_limits<double>::quiet_NaN();
+};
+
+}  // namespace
+
+/// The last of the list: a log that begins with damage is one still.
+const LogFormat kLcmFormat = {
+    "lcm",
+    "LCM log",
+    ".lcm",
+    [](std::string_view) { return true; },
+    read_lcm_recording,
+    [](const std::string& path) -> std::unique_ptr<LogWriter> { return std::make_unique<LcmSampleWriter>(path); }};
+
+const std::vector<LogFormat>& log_formats() {
+  static const std::vector<LogFormat> formats = {kUlogFormat, kMcapFormat, kMipFormat, kCsvFormat, kLcmFormat};
+  return formats;
+}
+
+const LogFormat& format_by_name(const std::string& name) {
+  const std::vector<LogFormat>& formats = log_formats();
+  const auto found =
+      std::find_if(formats.begin(), formats.end(), [&](const LogFormat& format) { return name == format.name; });
+  if (found == formats.end()) throw Error(ExitCode::kUsage, "no format '" + name + "'");
+  return *found;
+}
+
+const LogFormat& format_of(const std::string& path) {
+  ByteStream file(path);
+  file.have(kHead);
+  const std::string_view head(file.data(), std::min(kHead, file.available()));
+  const std::vector<LogFormat>& formats = log_formats();
+  return *std::find_if(formats.begin(), formats.end(), [&](const LogFormat& format) { return format.matches(head); });
+}
+
+LogLosses read_log(const LogRequest& request, SampleSink& sink) { return format_of(request.path).read(request, sink); }
+
+}  // namespace trunnion::io

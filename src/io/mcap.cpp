@@ -1,0 +1,437 @@
+// SPDX-FileCopyrightText: 2026 the trunnion authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// MCAP, the container of ROS 2's recordings. Between two marks records: kind (8 bits), length (64), content; numbers
+// are little-endian, a text is its length (32 bits) and its bytes. Chunks hold records in turn, compressed. Read from
+// front to back: what comes after the data, and the indices, are passed over, so a recording that was cut is read, too.
+
+#include <lz4frame.h>
+#include <zlib.h>
+#include <zstd.h>
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "byte_stream.hpp"
+#include "little_endian.hpp"
+#include "log_formats.hpp"
+#include "ros_message.hpp"
+#include "trunnion/io/whole_file.hpp"
+
+namespace trunnion::io {
+namespace {
+
+constexpr std::string_view kMagic("\x89MCAP0\r\n", 8);
+constexpr std::size_t kRecordHeader = 9;
+constexpr std::uint64_t kLargestChunk = std::uint64_t{1} << 30U;
+constexpr std::uint64_t kLargestRecord = std::uint64_t{1} << 28U;  // of what is read
+constexpr std::size_t kMostChannels = 65536;
+constexpr std::size_t kNamedTopics = 20;  // in a message
+constexpr std::uint32_t kChunkBytes = 1U << 20U;
+
+enum Kind : std::uint8_t {
+  kHeader = 1,
+  kFooter = 2,
+  kSchema = 3,
+  kChannel = 4,
+  kMessage = 5,
+  kChunk = 6,
+  kDataEnd = 15,
+};
+
+/// Members of a record, one after the other.
+class Fields {
+ public:
+  explicit Fields(std::string_view record) : rest_(record) {}
+
+  template <class T>
+  T number() {
+    if (rest_.size() < sizeof(T)) {
+      whole_ = false;
+      rest_ = {};
+      return T{};
+    }
+    const T v = load_little<T>(rest_.data());
+    rest_.remove_prefix(sizeof(T));
+    return v;
+  }
+  std::string_view bytes(std::uint64_t length) {
+    if (rest_.size() < length) {
+      whole_ = false;
+      rest_ = {};
+      return {};
+    }
+    const std::string_view found = rest_.substr(0, static_cast<std::size_t>(length));
+    rest_.remove_prefix(static_cast<std::size_t>(length));
+    return found;
+  }
+  std::string text() { return std::string(bytes(number<std::uint32_t>())); }
+  [[nodiscard]] std::string_view rest() const { return rest_; }
+  [[nodiscard]] bool whole() const { return whole_; }
+
+ private:
+  std::string_view rest_;
+  bool whole_ = true;
+};
+
+/// A chunk's records as they were before they were compressed.
+class Inflater {
+ public:
+  Inflater() : zstd_(ZSTD_createDCtx()) {
+    if (LZ4F_isError(LZ4F_createDecompressionContext(&lz4_, LZ4F_VERSION)) != 0U) lz4_ = nullptr;
+  }
+  Inflater(const Inflater&) = delete;
+  Inflater& operator=(const Inflater&) = delete;
+  ~Inflater() {
+    ZSTD_freeDCtx(zstd_);
+    LZ4F_freeDecompressionContext(lz4_);
+  }
+
+  /// @return what is wrong, or empty
+  std::string inflate(const std::string& compression, std::string_view from, std::size_t size, std::string_view& out) {
+    if (compression.empty()) {
+      out = from;
+      return from.size() == size ? "" : "has another size than it says";
+    }
+    if (compression != "zstd" && compression != "lz4")
+      return "is compressed with '" + printable(compression) + "': zstd and lz4 are read";
+    // a size that no compression reaches is a lie, and is not made room for
+    if (size / kLargestRatio > from.size()) return "has another size than it says";
+    if (buffer_.size() < size) buffer_.resize(size);
+    const std::size_t made = compression == "zstd" ? zstd(from, size) : lz4(from, size);
+    out = {buffer_.data(), made};
+    return made == size ? "" : "cannot be decompressed";
+  }
+
+ private:
+  static constexpr std::size_t kLargestRatio = 100000;
+
+  std::size_t zstd(std::string_view from, std::size_t size) {
+    const std::size_t made = ZSTD_decompressDCtx(zstd_, buffer_.data(), size, from.data(), from.size());
+    return ZSTD_isError(made) != 0U ? 0 : made;
+  }
+
+  std::size_t lz4(std::string_view from, std::size_t size) {
+    LZ4F_resetDecompressionContext(lz4_);
+    std::size_t made = 0;
+    std::size_t hint = 1;  // zero at the end of the frame
+    while (!from.empty() && hint != 0) {
+      std::size_t room = size - made;
+      std::size_t taken = from.size();
+      hint = LZ4F_decompress(lz4_, buffer_.data() + made, &room, from.data(), &taken, nullptr);
+      if (LZ4F_isError(hint) != 0U || (room == 0 && taken == 0)) return 0;
+      made += room;
+      from.remove_prefix(taken);
+    }
+    return hint == 0 && from.empty() ? made : 0;
+  }
+
+  ZSTD_DCtx* zstd_;
+  LZ4F_dctx* lz4_ = nullptr;
+  std::vector<char> buffer_;
+};
+
+/// "sensor_msgs/msg/Imu" of ROS 2 and "sensor_msgs/Imu" of ROS 1.
+bool is_type(const std::string& schema, const std::string& package, const std::string& name) {
+  return schema == package + "/msg/" + name || schema == package + "/" + name;
+}
+
+class McapReader {
+ public:
+  McapReader(const LogRequest& request, SampleSink& sink)
+      : request_(request), stream_(request.path, request.digest), intake_(sink) {}
+
+  LogLosses read() {
+    stream_.skip(stream_.have(kMagic.size()) ? kMagic.size() : stream_.available());
+    bool ended = false;
+    std::int64_t shown = 0;
+    while (!ended && stream_.have(kRecordHeader)) {
+      const auto kind = static_cast<std::uint8_t>(stream_.data()[0]);
+      const auto length = load_little<std::uint64_t>(stream_.data() + 1);
+      const auto rest = static_cast<std::uint64_t>(stream_.size() - stream_.offset()) - kRecordHeader;
+      const bool wanted = kind >= kSchema && kind <= kChunk;
+      if (kind == 0 || length > rest || (wanted && length > (kind == kChunk ? kLargestChunk : kLargestRecord))) break;
+      if (wanted) {
+        if (!stream_.have(kRecordHeader + static_cast<std::size_t>(length))) break;
+        byte_ = stream_.offset();
+        take(kind, {stream_.data() + kRecordHeader, static_cast<std::size_t>(length)});
+      }
+      stream_.pass(kRecordHeader + length);
+      ended = kind == kDataEnd || kind == kFooter;
+      if (request_.progress && stream_.offset() - shown > kBytesPerProgress) {
+        shown = stream_.offset();
+        request_.progress(static_cast<double>(shown) / static_cast<double>(stream_.size()));
+      }
+    }
+    if (!ended) {
+      ++lost_records_;
+      lost_bytes_ += stream_.size() - stream_.offset();
+    }
+    while (stream_.have(1)) stream_.skip(stream_.available());  // the digest is of all
+    finish();
+    return {lost_records_ + intake_.damaged_records(), lost_bytes_ + intake_.damaged_bytes(), 0};
+  }
+
+ private:
+  enum class Role { kOther, kImu, kEncoder };
+  struct Channel {
+    std::string topic;
+    std::string type;
+    RosEncoding encoding = RosEncoding::kCdr;
+    Role role = Role::kOther;
+  };
+
+  void take(std::uint8_t kind, std::string_view record) {
+    if (kind == kMessage) return message(record);
+    if (kind == kChunk) return chunk(record);
+    Fields fields(record);
+    const auto id = fields.number<std::uint16_t>();
+    if (kind == kSchema) {
+      if (schemas_.size() < kMostChannels) schemas_[id] = fields.text();
+      return;
+    }
+    const auto schema = fields.number<std::uint16_t>();
+    const std::string topic = fields.text();
+    const std::string encoding = fields.text();
+    if (!fields.whole()) return damage(record.size(), "channel", "is shorter than its members");
+    if (channels_.count(id) != 0) return;
+    Channel channel{topic, schemas_[schema], encoding == "ros1" ? RosEncoding::kRos1 : RosEncoding::kCdr, Role::kOther};
+    const bool known = encoding == "cdr" || encoding == "ros1";
+    const std::string& imu = request_.channels.imu.name;
+    const std::string& encoder = request_.channels.encoder.name;
+    const bool is_imu = known && is_type(channel.type, "sensor_msgs", "Imu");
+    const bool is_joints = known && is_type(channel.type, "sensor_msgs", "JointState");
+    if (topic == imu || topic == encoder) {
+      if (topic == imu ? !is_imu : !is_joints)
+        throw input_error(request_.path, 0, printable(topic),
+                          "is of type " + printable(channel.type.empty() ? encoding : channel.type) + ", not " +
+                              (topic == imu ? "sensor_msgs/msg/Imu" : "sensor_msgs/msg/JointState"));
+    }
+    if (is_imu && (imu.empty() || topic == imu)) channel.role = Role::kImu;
+    if (is_joints && (encoder.empty() || topic == encoder)) channel.role = Role::kEncoder;
+    if (channel.role == Role::kImu) claim(imu_topic_, topic, "imu");
+    if (channel.role == Role::kEncoder && (request_.need_encoder || !encoder.empty()))
+      claim(encoder_topic_, topic, "encoder");
+    channels_[id] = channel;
+  }
+
+  /// One topic is read: where there are two, the user says which.
+  void claim(std::string& claimed, const std::string& topic, const char* key) const {
+    if (!claimed.empty() && claimed != topic)
+      throw input_error(request_.path, 0, "",
+                        "has more than one: " + printable(claimed) + " and " + printable(topic) +
+                            "; name one under channels: {" + key + ": ...}, or with --channel");
+    claimed = topic;
+  }
+
+  void message(std::string_view record) {
+    Fields fields(record);
+    const auto channel = channels_.find(fields.number<std::uint16_t>());
+    fields.number<std::uint32_t>();  // its number: zero where the recorder has none
+    fields.number<std::uint64_t>();
+    fields.number<std::uint64_t>();
+    if (!fields.whole()) return damage(record.size(), "message", "is shorter than its members");
+    if (channel == channels_.end() || channel->second.role == Role::kOther) return;
+    const Channel& of = channel->second;
+    std::string wrong;
+    if (of.role == Role::kImu) {
+      if (const auto imu = decode_ros_imu(fields.rest(), of.encoding, wrong))
+        return intake_.imu(imu->utime, imu->sample, record.size(), AtByte(request_.path, byte_));
+    } else {
+      if (const auto at = decode_ros_joints(fields.rest(), of.encoding, request_.joints, wrong))
+        return intake_.encoder(at->utime, at->angle, record.size(), AtByte(request_.path, byte_));
+      if (!request_.need_encoder) return;  // the joints of something else
+    }
+    damage(record.size(), of.topic, wrong);
+  }
+
+  void chunk(std::string_view record) {
+    Fields fields(record);
+    fields.number<std::uint64_t>();
+    fields.number<std::uint64_t>();
+    const auto size = fields.number<std::uint64_t>();
+    const auto crc = fields.number<std::uint32_t>();
+    const std::string compression = fields.text();
+    const std::string_view packed = fields.bytes(fields.number<std::uint64_t>());
+    std::string wrong = !fields.whole() || size > kLargestChunk ? "is shorter than its members" : "";
+    std::string_view records;
+    if (wrong.empty()) wrong = inflater_.inflate(compression, packed, static_cast<std::size_t>(size), records);
+    if (wrong.empty() && crc != 0 && crc32_of(records) != crc) wrong = "does not have its checksum";
+    if (!wrong.empty()) {
+      ++lost_records_;
+      lost_bytes_ += static_cast<long long>(record.size());
+      if (first_lost_.empty()) first_lost_ = input_error_at_byte(request_.path, byte_, "chunk", wrong).what();
+      return;
+    }
+    while (records.size() >= kRecordHeader) {
+      const auto kind = static_cast<std::uint8_t>(records[0]);
+      const auto length = load_little<std::uint64_t>(records.data() + 1);
+      if (length > records.size() - kRecordHeader) break;
+      if (kind >= kSchema && kind <= kMessage)
+        take(kind, records.substr(kRecordHeader, static_cast<std::size_t>(length)));
+      records.remove_prefix(kRecordHeader + static_cast<std::size_t>(length));
+    }
+    if (!records.empty()) damage(records.size(), "chunk", "ends within a record");
+  }
+
+  static std::uint32_t crc32_of(std::string_view bytes) {
+    return static_cast<std::uint32_t>(::crc32_z(0, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()));
+  }
+
+  void damage(std::size_t bytes, const std::string& field, const std::string& what) {
+    intake_.damage(bytes, AtByte(request_.path, byte_)(printable(field), what));
+  }
+
+  void finish() const {
+    std::set<std::string> topics;
+    for (const auto& [id, channel] : channels_) {
+      if (topics.size() < kNamedTopics)
+        topics.insert(printable(channel.topic) + (channel.type.empty() ? "" : " (" + printable(channel.type) + ")"));
+    }
+    std::string holds;
+    for (const std::string& topic : topics) holds += (holds.empty() ? "topics " : ", ") + topic;
+    if (!first_lost_.empty() && intake_.samples() + intake_.encoders() == 0) throw Error(ExitCode::kInput, first_lost_);
+    require(request_, intake_, holds);
+  }
+
+  const LogRequest& request_;
+  ByteStream stream_;
+  SampleIntake intake_;
+  Inflater inflater_;
+  std::map<std::uint16_t, std::string> schemas_;
+  std::map<std::uint16_t, Channel> channels_;
+  std::string imu_topic_;
+  std::string encoder_topic_;
+  std::string first_lost_;
+  std::int64_t byte_ = 0;  // of the record in the file
+  long long lost_records_ = 0;
+  long long lost_bytes_ = 0;
+};
+
+/// /imu/data and /joint_states, in chunks that are not compressed.
+class McapWriter final : public LogWriter {
+ public:
+  explicit McapWriter(const std::string& path) : path_(path), file_(path) {
+    file_.write(kMagic);
+    std::string header;
+    add_text(header, "ros2");
+    add_text(header, "trunnion");
+    write(kHeader, header);
+    for (const std::uint16_t id : {kImuId, kJointsId}) {
+      std::string schema;
+      append_little(schema, id);
+      add_text(schema, id == kImuId ? "sensor_msgs/msg/Imu" : "sensor_msgs/msg/JointState");
+      add_text(schema, "ros2msg");
+      add_text(schema, id == kImuId ? kRosImuDefinition : kRosJointStateDefinition);
+      write(kSchema, schema);
+      std::string channel;
+      append_little(channel, id);
+      append_little(channel, id);
+      add_text(channel, id == kImuId ? "/imu/data" : "/joint_states");
+      add_text(channel, "cdr");
+      append_little(channel, std::uint32_t{0});  // no metadata
+      write(kChannel, channel);
+    }
+  }
+
+  void imu(std::int64_t utime, const InertialSample<double>& sample) override {
+    check(utime);
+    encode_ros_imu(utime, sample, message_);
+    add(kImuId, samples_++, utime);
+  }
+  [[nodiscard]] bool holds_temperature() const override { return false; }
+  void encoder(std::int64_t utime, double azimuth, double pitch) override {
+    check(utime);
+    encode_ros_joints(utime, LogRequest().joints, {azimuth, pitch}, message_);
+    add(kJointsId, readings_++, utime);
+  }
+  void commit() override {
+    flush();
+    write(kDataEnd, std::string(4, '\0'));
+    write(kFooter, std::string(20, '\0'));  // no summary
+    file_.write(kMagic);
+    file_.commit();
+  }
+  [[nodiscard]] std::vector<std::string> files() const override { return {path_}; }
+
+ private:
+  static constexpr std::uint16_t kImuId = 1;
+  static constexpr std::uint16_t kJointsId = 2;
+
+  static void add_text(std::string& out, std::string_view text) {
+    append_little(out, static_cast<std::uint32_t>(text.size()));
+    out.append(text);
+  }
+  static void add_record(std::string& out, Kind kind, std::string_view content) {
+    out += static_cast<char>(kind);
+    append_little(out, static_cast<std::uint64_t>(content.size()));
+    out.append(content);
+  }
+  void write(Kind kind, std::string_view content) {
+    record_.clear();
+    add_record(record_, kind, content);
+    file_.write(record_);
+  }
+  void check(std::int64_t utime) const {
+    if (utime < 0 || utime / 1000000 > std::numeric_limits<std::int32_t>::max())
+      throw input_error(path_, 0, "", "a stamp of " + std::to_string(utime) + " us: ROS holds 0 to 2147483647 s");
+  }
+  void add(std::uint16_t id, std::uint32_t number, std::int64_t utime) {
+    const auto log_time = static_cast<std::uint64_t>(1000 * utime);
+    record_.clear();
+    append_little(record_, id);
+    append_little(record_, number);
+    append_little(record_, log_time);
+    append_little(record_, log_time);
+    record_.append(message_);
+    add_record(chunk_, kMessage, record_);
+    first_ = std::min(first_, log_time);
+    last_ = std::max(last_, log_time);
+    if (chunk_.size() >= kChunkBytes) flush();
+  }
+  void flush() {
+    if (chunk_.empty()) return;
+    std::string chunk;
+    append_little(chunk, first_);
+    append_little(chunk, last_);
+    append_little(chunk, static_cast<std::uint64_t>(chunk_.size()));
+    append_little(chunk, static_cast<std::uint32_t>(
+                             ::crc32_z(0, reinterpret_cast<const unsigned char*>(chunk_.data()), chunk_.size())));
+    add_text(chunk, "");
+    append_little(chunk, static_cast<std::uint64_t>(chunk_.size()));
+    chunk.append(chunk_);
+    write(kChunk, chunk);
+    chunk_.clear();
+    first_ = std::numeric_limits<std::uint64_t>::max();
+    last_ = 0;
+  }
+
+  std::string path_;
+  WholeFile file_;
+  std::string message_;
+  std::string record_;
+  std::string chunk_;
+  std::uint64_t first_ = std::numeric_limits<std::uint64_t>::max();
+  std::uint64_t last_ = 0;
+  std::uint32_t samples_ = 0;
+  std::uint32_t readings_ = 0;
+};
+
+bool is_mcap(std::string_view head) { return head.substr(0, kMagic.size()) == kMagic; }
+
+LogLosses read_mcap(const LogRequest& request, SampleSink& sink) { return McapReader(request, sink).read(); }
+
+}  // namespace
+
+const LogFormat kMcapFormat = {"mcap",
+                               "MCAP recording",
+                               ".mcap",
+                               is_mcap,
+                               read_mcap,
+                               [](const std::string& path) -> std::unique_ptr<LogWriter> { return std::make_unique<McapWriter>(path); }};
+
+}  // namespace trunnion::io

@@ -1,0 +1,191 @@
+// SPDX-FileCopyrightText: 2026 the trunnion authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// MicroStrain's inertial protocol. A packet: 0x75 0x65, descriptor set, length of the payload, payload, two bytes of
+// Fletcher's checksum over all before. The payload is fields: length with itself, descriptor, data; numbers are
+// big-endian. Sensor data (set 0x80) and its stamps are in one packet.
+
+#include <cmath>
+#include <cstring>
+#include <optional>
+
+#include "big_endian.hpp"
+#include "byte_stream.hpp"
+#include "log_formats.hpp"
+#include "trunnion/core/units.hpp"
+
+namespace trunnion::io {
+namespace {
+
+constexpr std::size_t kHeader = 4;
+constexpr std::size_t kChecksum = 2;
+constexpr std::uint8_t kSensorSet = 0x80;
+constexpr double kSecondsPerWeek = 604800.0;
+
+std::uint8_t byte_at(const char* p) { return static_cast<std::uint8_t>(*p); }
+
+bool begins_packet(const char* p) { return byte_at(p) == 0x75 && byte_at(p + 1) == 0x65; }
+
+/// Whether @p length bytes end in the checksum of those before.
+bool sums_up(const char* p, std::size_t length) {
+  std::uint8_t a = 0;
+  std::uint8_t b = 0;
+  for (std::size_t i = 0; i + kChecksum < length; ++i) {
+    a = static_cast<std::uint8_t>(a + byte_at(p + i));
+    b = static_cast<std::uint8_t>(b + a);
+  }
+  return byte_at(p + length - 2) == a && byte_at(p + length - 1) == b;
+}
+
+Vec3<double> vector_at(const char* p) {
+  return {static_cast<double>(load_float(p)), static_cast<double>(load_float(p + 4)),
+          static_cast<double>(load_float(p + 8))};
+}
+
+/// Fields of one packet of sensor data.
+struct SensorPacket {
+  std::optional<Vec3<double>> rate;            // rad/s
+  std::optional<Vec3<double>> force;           // m/s^2
+  std::optional<Vec3<double>> delta_angle;     // rad
+  std::optional<Vec3<double>> delta_velocity;  // m/s
+  std::optional<std::int64_t> reference_ns;
+  std::optional<std::int64_t> period_ns;
+  std::optional<std::int64_t> gps_us;  // since the GPS epoch
+
+  /// @return false for a field whose length is not that of its kind
+  bool take(std::uint8_t descriptor, const char* p, std::size_t length) {
+    switch (descriptor) {
+      case 0x04:
+        return length == 12 && set(force, kStandardGravity * vector_at(p));
+      case 0x05:
+        return length == 12 && set(rate, vector_at(p));
+      case 0x07:
+        return length == 12 && set(delta_angle, vector_at(p));
+      case 0x08:
+        return length == 12 && set(delta_velocity, kStandardGravity * vector_at(p));
+      case 0x12:  // time of week, week, flags
+      case 0xD3: {
+        if (length != 12) return false;
+        const double tow = load_double(p);
+        const std::uint32_t week_and_flags = load_u32(p + 8);
+        const auto flags = static_cast<std::uint16_t>(week_and_flags);
+        const bool valid = descriptor == 0xD3 ? (flags & 3U) == 3U : (flags & 1U) != 0U || (flags & 4U) != 0U;
+        if (valid && tow >= 0.0 && tow < kSecondsPerWeek + 1.0)
+          gps_us = std::llround(1e6 * (kSecondsPerWeek * static_cast<double>(week_and_flags >> 16U) + tow));
+        return true;
+      }
+      case 0xD5:
+        return length == 8 && set(reference_ns, load_i64(p));
+      case 0xD6:
+        return length == 8 && set(period_ns, load_i64(p));
+      default:
+        return true;
+    }
+  }
+
+  [[nodiscard]] std::optional<std::int64_t> utime() const {
+    if (reference_ns) return *reference_ns / 1000 + (*reference_ns % 1000 >= 500 ? 1 : 0);
+    return gps_us;
+  }
+
+ private:
+  template <class T, class U>
+  static bool set(std::optional<T>& field, const U& value) {
+    field = value;
+    return true;
+  }
+};
+
+class MipReader {
+ public:
+  MipReader(const LogRequest& request, SampleSink& sink)
+      : request_(request), stream_(request.path, request.digest), intake_(sink) {}
+
+  LogLosses read() {
+    std::int64_t shown = 0;
+    while (stream_.have(kHeader + kChecksum)) {
+      const std::size_t length = kHeader + byte_at(stream_.data() + 3) + kChecksum;
+      if (!begins_packet(stream_.data()) || !stream_.have(length) || !sums_up(stream_.data(), length)) {
+        lose();
+        continue;
+      }
+      synchronised_ = true;
+      if (byte_at(stream_.data() + 2) == kSensorSet) sensor(length);
+      stream_.skip(length);
+      if (request_.progress && stream_.offset() - shown > kBytesPerProgress) {
+        shown = stream_.offset();
+        request_.progress(static_cast<double>(shown) / static_cast<double>(stream_.size()));
+      }
+    }
+    lost_bytes_ += static_cast<long long>(stream_.available());
+    std::string holds = "MIP packets";
+    if (without_time_ > 0) holds = std::to_string(without_time_) + " packets of sensor data without a stamp";
+    if (without_pair_ > 0)
+      holds = std::to_string(without_pair_) + " packets with either rates or specific forces, not both";
+    require(request_, intake_, holds);
+    return {lost_records_ + intake_.damaged_records(), lost_bytes_ + intake_.damaged_bytes(), 0};
+  }
+
+ private:
+  void lose() {
+    if (synchronised_) ++lost_records_;
+    synchronised_ = false;
+    stream_.skip(1);
+    ++lost_bytes_;
+  }
+
+  void sensor(std::size_t length) {
+    const AtByte fault(request_.path, stream_.offset());
+    SensorPacket packet;
+    const char* const p = stream_.data();
+    for (std::size_t at = kHeader; at + kChecksum < length;) {
+      const std::size_t field = byte_at(p + at);
+      if (field < 2 || at + field + kChecksum > length || !packet.take(byte_at(p + at + 1), p + at + 2, field - 2))
+        return intake_.damage(length, fault("field " + std::to_string(byte_at(p + at + 1)), "has a wrong length"));
+      at += field;
+    }
+    const std::optional<std::int64_t> utime = packet.utime();
+    const double period =
+        1e-9 * static_cast<double>(packet.period_ns.value_or(utime && last_ ? 1000 * (*utime - *last_) : 0));
+    if (utime) last_ = utime;
+    // angles and velocities are the means themselves; rates are what a filter leaves of them
+    if (!packet.rate && packet.delta_angle && period > 0.0) packet.rate = *packet.delta_angle / period;
+    if (!packet.force && packet.delta_velocity && period > 0.0) packet.force = *packet.delta_velocity / period;
+    if (packet.rate && packet.force && utime) {
+      intake_.imu(*utime, {*packet.rate, *packet.force}, length, fault);
+    } else if (packet.rate && packet.force) {
+      ++without_time_;
+    } else if (packet.rate || packet.force) {
+      ++without_pair_;
+    }
+  }
+
+  const LogRequest& request_;
+  ByteStream stream_;
+  SampleIntake intake_;
+  std::optional<std::int64_t> last_;
+  bool synchronised_ = true;
+  long long lost_records_ = 0;
+  long long lost_bytes_ = 0;
+  long long without_time_ = 0;
+  long long without_pair_ = 0;
+};
+
+bool is_mip(std::string_view head) {
+  for (std::size_t at = 0; at + kHeader + kChecksum <= head.size(); ++at) {
+    const char* const p = head.data() + at;
+    if (!begins_packet(p)) continue;
+    const std::size_t length = kHeader + byte_at(p + 3) + kChecksum;
+    if (at + length > head.size() || !sums_up(p, length)) continue;
+    if (at == 0 || at + length + 2 > head.size() || begins_packet(p + length)) return true;
+  }
+  return false;
+}
+
+LogLosses read_mip(const LogRequest& request, SampleSink& sink) { return MipReader(request, sink).read(); }
+
+}  // namespace
+
+const LogFormat kMipFormat = {"mip", "MicroStrain MIP stream", ".mip", is_mip, read_mip, nullptr};
+
+}  // namespace trunnion::io

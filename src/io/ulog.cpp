@@ -1,0 +1,304 @@
+// SPDX-FileCopyrightText: 2026 the trunnion authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// PX4's ULog. A header of 16 bytes, then messages: length (16 bits, without these three bytes), kind, content; numbers
+// are little-endian. F defines a format, A gives a number to a topic that has it, D is data of such a number.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "byte_stream.hpp"
+#include "little_endian.hpp"
+#include "log_formats.hpp"
+
+namespace trunnion::io {
+namespace {
+
+constexpr std::string_view kMagic("ULog\x01\x12\x35", 7);
+constexpr std::size_t kFileHeader = 16;
+constexpr std::size_t kMessageHeader = 3;
+constexpr std::string_view kSync("\x2f\x73\x13\x20\x25\x0c\xbb\x12", 8);  // of an S message
+constexpr std::size_t kMostFormats = 4096;
+constexpr int kMostNesting = 8;
+constexpr int kMostFields = 10000;  // of a topic with those nested in it
+constexpr std::size_t kLongestMessage = 65535;
+constexpr int kMostElements = 10000;
+constexpr std::size_t kNamedTopics = 20;  // in a message
+constexpr std::int32_t kNotRelative = std::numeric_limits<std::int32_t>::max();
+constexpr const char* kCombined = "sensor_combined";
+constexpr const char* kIntegrals = "vehicle_imu";
+constexpr std::uint16_t kNone = 0xffff;
+
+std::size_t size_of(std::string_view type) {
+  if (type == "int8_t" || type == "uint8_t" || type == "bool" || type == "char") return 1;
+  if (type == "int16_t" || type == "uint16_t") return 2;
+  if (type == "int32_t" || type == "uint32_t" || type == "float") return 4;
+  if (type == "int64_t" || type == "uint64_t" || type == "double") return 8;
+  return 0;
+}
+
+/// Definitions of topics, as the log states them: "uint64_t timestamp;float[3] gyro_rad;...".
+class Formats {
+ public:
+  /// @return false for what is no definition
+  bool add(std::string_view text) {
+    const std::size_t colon = text.find(':');
+    if (colon == std::string_view::npos || fields_.size() >= kMostFormats) return false;
+    fields_[std::string(text.substr(0, colon))] = std::string(text.substr(colon + 1));
+    return true;
+  }
+
+  struct Place {
+    std::size_t offset = 0;
+    std::string type;  // of an element
+    int elements = 1;
+  };
+
+  /// Where a field is in the data of a topic; nothing when it has none of that name.
+  [[nodiscard]] std::optional<Place> find(const std::string& topic, std::string_view name) const {
+    std::optional<Place> found;
+    int fields = 0;
+    size(topic, name, found, 0, fields);
+    return found;
+  }
+
+ private:
+  /// Of a topic's data, the padding at its end left out as the logger does; nothing for an unknown or endless type.
+  std::optional<std::size_t> size(const std::string& topic, std::string_view wanted, std::optional<Place>& found,
+                                  int depth, int& fields) const {
+    const auto format = fields_.find(topic);
+    if (format == fields_.end() || depth > kMostNesting) return std::nullopt;
+    std::size_t offset = 0;
+    std::string_view rest = format->second;
+    while (!rest.empty()) {
+      const std::string_view field = rest.substr(0, rest.find(';'));
+      rest.remove_prefix(std::min(rest.size(), field.size() + 1));
+      if (field.empty()) continue;
+      const std::size_t blank = field.find(' ');
+      if (blank == std::string_view::npos || ++fields > kMostFields) return std::nullopt;
+      std::string_view type = field.substr(0, blank);
+      int elements = 1;
+      const std::size_t bracket = type.find('[');
+      if (bracket != std::string_view::npos) {
+        elements = 0;
+        for (std::size_t i = bracket + 1; i < type.size() && type[i] != ']'; ++i) {
+          if (type[i] < '0' || type[i] > '9' || elements > kMostElements) return std::nullopt;
+          elements = 10 * elements + (type[i] - '0');
+        }
+        type = type.substr(0, bracket);
+      }
+      if (depth == 0 && field.substr(blank + 1) == wanted) found = Place{offset, std::string(type), elements};
+      std::size_t one = size_of(type);
+      if (one == 0) {
+        std::optional<Place> ignored;
+        const std::optional<std::size_t> nested = size(std::string(type), {}, ignored, depth + 1, fields);
+        if (!nested) return std::nullopt;
+        one = *nested;
+      }
+      offset += one * static_cast<std::size_t>(elements);
+      if (offset > kLongestMessage) return std::nullopt;
+    }
+    return offset;
+  }
+
+  std::map<std::string, std::string, std::less<>> fields_;
+};
+
+/// Where the fields of the topic are that is read.
+struct Layout {
+  std::size_t stamp = 0;
+  std::size_t rate = 0;
+  std::size_t force = 0;
+  std::optional<std::size_t> relative;     // of sensor_combined: age of the accelerometers' sample
+  std::optional<std::size_t> rate_period;  // of vehicle_imu: us that its increments are of
+  std::optional<std::size_t> force_period;
+  bool wide_period = false;  // of 32 bits, else 16
+  std::size_t bytes = 0;     // that a message has at least
+};
+
+class UlogReader {
+ public:
+  UlogReader(const LogRequest& request, SampleSink& sink)
+      : request_(request), stream_(request.path, request.digest), intake_(sink) {
+    const std::string& name = request.channels.imu.name;
+    const std::size_t hash = name.find('#');
+    topic_ = name.substr(0, hash);
+    if (hash == std::string::npos) return;
+    instance_ = name.substr(hash + 1);
+    if (instance_.empty() || instance_.size() > 3 || instance_.find_first_not_of("0123456789") != std::string::npos)
+      throw input_error(request.path, 0, "", "'" + printable(name) + "' is no topic: name it topic or topic#instance");
+  }
+
+  LogLosses read() {
+    stream_.have(kFileHeader);
+    stream_.skip(std::min(kFileHeader, stream_.available()));
+    std::int64_t shown = 0;
+    while (stream_.have(kMessageHeader)) {
+      const std::size_t length = load_little<std::uint16_t>(stream_.data());
+      const char kind = stream_.data()[2];
+      if (kind < 'A' || kind > 'Z' || length == 0 || !stream_.have(kMessageHeader + length)) {
+        lose();
+        continue;
+      }
+      message(kind, {stream_.data() + kMessageHeader, length});
+      stream_.skip(kMessageHeader + length);
+      if (request_.progress && stream_.offset() - shown > kBytesPerProgress) {
+        shown = stream_.offset();
+        request_.progress(static_cast<double>(shown) / static_cast<double>(stream_.size()));
+      }
+    }
+    if (stream_.available() > 0) {
+      ++lost_records_;
+      lost_bytes_ += static_cast<long long>(stream_.available());
+    }
+    std::string holds;
+    std::size_t named = 0;
+    for (const auto& [name, number] : topics_) {
+      if (named++ == kNamedTopics) break;
+      holds += (holds.empty() ? "topics " : ", ") + printable(name);
+    }
+    require(request_, intake_, holds);
+    return {lost_records_ + intake_.damaged_records(), lost_bytes_ + intake_.damaged_bytes(), 0};
+  }
+
+ private:
+  /// On to the next mark that the logger sets for this, or the end.
+  void lose() {
+    ++lost_records_;
+    lost_bytes_ += 1;
+    stream_.skip(1);
+    const std::size_t mark = kMessageHeader + kSync.size();
+    while (stream_.have(mark)) {
+      const std::string_view rest(stream_.data(), stream_.available());
+      const std::size_t at = rest.find(kSync, kMessageHeader);
+      const bool here = at != std::string_view::npos && rest[at - 1] == 'S';
+      const std::size_t step = here                           ? at - kMessageHeader
+                               : at != std::string_view::npos ? at - kMessageHeader + 1
+                                                              : rest.size() - mark + 1;
+      stream_.skip(step);
+      lost_bytes_ += static_cast<long long>(step);
+      if (here) return;
+    }
+    lost_bytes_ += static_cast<long long>(stream_.available());
+    stream_.skip(stream_.available());
+  }
+
+  void message(char kind, std::string_view content) {
+    if (kind == 'D') {
+      if (content.size() > 2 && number_ != kNone && load_little<std::uint16_t>(content.data()) == number_)
+        data(content.substr(2));
+    } else if (kind == 'F') {
+      formats_.add(content);
+    } else if (kind == 'B') {
+      // appended data is data as any; a logger of times to come states what one must understand to read on
+      for (std::size_t i = 8; i < std::min<std::size_t>(16, content.size()); ++i) {
+        if ((static_cast<unsigned char>(content[i]) & (i == 8 ? 0xfeU : 0xffU)) != 0)
+          throw input_error(request_.path, 0, "", "is a ULog of a newer kind: its flags are not known");
+      }
+    } else if (kind == 'A' && content.size() > 3) {
+      subscribe(std::to_string(static_cast<std::uint8_t>(content[0])), load_little<std::uint16_t>(content.data() + 1),
+                std::string(content.substr(3)));
+    }
+  }
+
+  void subscribe(const std::string& instance, std::uint16_t number, const std::string& topic) {
+    topics_.emplace(topic + (instance == "0" ? "" : "#" + instance), number);
+    const bool wanted = topic_.empty() ? (topic == kCombined || topic == kIntegrals) : topic == topic_;
+    if (!wanted || instance != instance_ || number_ != kNone) return;
+    layout_ = layout_of(topic);
+    number_ = number;
+  }
+
+  Layout layout_of(const std::string& topic) const {
+    Layout layout;
+    const auto place = [&](const char* name, const char* type, int elements) {
+      const std::optional<Formats::Place> found = formats_.find(topic, name);
+      if (!found || found->type != type || found->elements != elements)
+        throw input_error(request_.path, 0, topic + "." + name,
+                          std::string("is no ") + type + (elements > 1 ? "[" + std::to_string(elements) + "]" : "") +
+                              ": topics sensor_combined and vehicle_imu can be read");
+      return found->offset;
+    };
+    const auto end_at = [&](std::size_t end) { layout.bytes = std::max(layout.bytes, end); };
+    if (formats_.find(topic, "delta_angle")) {
+      layout.stamp = place("timestamp_sample", "uint64_t", 1);
+      layout.rate = place("delta_angle", "float", 3);
+      layout.force = place("delta_velocity", "float", 3);
+      const auto period = [&](const char* name) {
+        const std::optional<Formats::Place> found = formats_.find(topic, name);
+        layout.wide_period = found && found->type == "uint32_t";
+        return place(name, layout.wide_period ? "uint32_t" : "uint16_t", 1);
+      };
+      layout.rate_period = period("delta_angle_dt");
+      layout.force_period = period("delta_velocity_dt");
+      end_at(*layout.rate_period + (layout.wide_period ? 4 : 2));
+      end_at(*layout.force_period + (layout.wide_period ? 4 : 2));
+    } else {
+      layout.stamp = place("timestamp", "uint64_t", 1);
+      layout.rate = place("gyro_rad", "float", 3);
+      layout.force = place("accelerometer_m_s2", "float", 3);
+      if (formats_.find(topic, "accelerometer_timestamp_relative")) {
+        layout.relative = place("accelerometer_timestamp_relative", "int32_t", 1);
+        end_at(*layout.relative + 4);
+      }
+    }
+    end_at(layout.stamp + 8);
+    end_at(layout.rate + 12);
+    end_at(layout.force + 12);
+    return layout;
+  }
+
+  static Vec3<double> vector_at(const char* p) {
+    return {static_cast<double>(load_little<float>(p)), static_cast<double>(load_little<float>(p + 4)),
+            static_cast<double>(load_little<float>(p + 8))};
+  }
+
+  void data(std::string_view content) {
+    const AtByte fault(request_.path, stream_.offset());
+    if (content.size() < layout_.bytes)
+      return intake_.damage(content.size(), fault("data", "is shorter than its format"));
+    const char* const p = content.data();
+    InertialSample<double> sample{vector_at(p + layout_.rate), vector_at(p + layout_.force)};
+    if (layout_.rate_period) {
+      const auto microseconds = [&](std::size_t at) {
+        return layout_.wide_period ? static_cast<double>(load_little<std::uint32_t>(p + at))
+                                   : static_cast<double>(load_little<std::uint16_t>(p + at));
+      };
+      const double rate_period = 1e-6 * microseconds(*layout_.rate_period);
+      const double force_period = 1e-6 * microseconds(*layout_.force_period);
+      if (rate_period == 0.0 || force_period == 0.0)
+        return intake_.damage(content.size(), fault("delta_angle_dt", "is zero"));
+      sample = {sample.w / rate_period, sample.f / force_period};
+    } else if (layout_.relative && load_little<std::int32_t>(p + *layout_.relative) == kNotRelative) {
+      return;  // no sample of the accelerometers
+    }
+    intake_.imu(static_cast<std::int64_t>(load_little<std::uint64_t>(p + layout_.stamp)), sample, content.size(),
+                fault);
+  }
+
+  const LogRequest& request_;
+  ByteStream stream_;
+  SampleIntake intake_;
+  std::string topic_;
+  std::string instance_ = "0";
+  Formats formats_;
+  std::map<std::string, std::uint16_t> topics_;
+  std::uint16_t number_ = kNone;
+  Layout layout_;
+  long long lost_records_ = 0;
+  long long lost_bytes_ = 0;
+};
+
+bool is_ulog(std::string_view head) { return head.substr(0, kMagic.size()) == kMagic; }
+
+LogLosses read_ulog(const LogRequest& request, SampleSink& sink) { return UlogReader(request, sink).read(); }
+
+}  // namespace
+
+const LogFormat kUlogFormat = {"ulog", "PX4 ULog", ".ulg", is_ulog, read_ulog, nullptr};
+
+}  // namespace trunnion::io
