@@ -203,6 +203,10 @@ class Table {
       const auto [after, error] = std::from_chars(from, end_, cells_[found]);
       const bool number = error == std::errc{};
       p = number ? after : p;
+      if (number && p != end_ && *p == separator_ && separator_ != ' ') {  // as it is almost always
+        ++p;
+        continue;
+      }
       const char* cell_end = p;
       while (cell_end != end_ && *cell_end != '\n' && *cell_end != '\r' &&
              *cell_end != (separator_ == ' ' ? '\t' : separator_) && (separator_ != ' ' || *cell_end != ' ')) {
