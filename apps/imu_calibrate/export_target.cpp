@@ -69,7 +69,7 @@ void export_to_target(const TargetOptions& o) {
   const double rate = o.rate_deg_per_s * kRadPerDeg;
   const std::string at = " at " + figure(o.rate_deg_per_s, 4) + " deg/s and 1 g";
   std::vector<std::string> words;
-  for (const io::LeftOut& left : io::left_out(format, request, rate))
+  for (const io::Omission& left : io::omissions(format, request, rate))
     words.push_back("Left out: " + left.term + ", up to " + sizes(left.size) + at);
   request.notes.insert(request.notes.end(), words.begin(), words.end());
   const io::Exported exported = format.make(request);

@@ -121,8 +121,8 @@ InertialSample<double> departure(const Unit& unit, const Exported& exported, dou
   return most;
 }
 
-std::vector<LeftOut> left_out(const ExportFormat& format, const ExportRequest& request, double rate) {
-  std::vector<LeftOut> all;
+std::vector<Omission> omissions(const ExportFormat& format, const ExportRequest& request, double rate) {
+  std::vector<Omission> all;
   const auto counts = [](double size, double of) { return size > 1e-9 * of; };
   ExportRequest one = request;
   for (const Term& term : terms()) {

@@ -89,7 +89,7 @@ bool LcmLogReader::next(LcmEvent& event) {
     event.byte = stream_->offset();
     if (!synchronised_) {
       // the logger's numbers tell how many records the damage took; one was counted when it was met
-      const std::int64_t gap = last_number_ < 0 ? 1 : event.number - last_number_ - 1;
+      const std::int64_t gap = last_number_ < 0 || event.number < last_number_ ? 1 : event.number - last_number_ - 1;
       if (gap > 1 && gap < stream_->size() / static_cast<std::int64_t>(kHeader)) lost_records_ += gap - 1;
       synchronised_ = true;
     }

@@ -360,7 +360,7 @@ TEST(Export, EverythingWithJson) {
 }
 
 TEST(Export, SaysItsOwnFormula) {
-  // what left_out() judges with is what the file makes its reader compute
+  // what omissions() judges with is what the file makes its reader compute
   const std::map<std::string, Target (*)(const std::string&)> readers = {
       {"kalibr", kalibr_of},       {"openvins", openvins_of},   {"ros", ros_of},  {"px4", px4_of},
       {"ardupilot", ardupilot_of}, {"vectornav", vectornav_of}, {"json", json_of}};
@@ -382,11 +382,11 @@ std::vector<std::string> terms_left_out(const char* format, const InertialUnit<d
   ExportRequest request;
   request.unit = unit;
   std::vector<std::string> terms;
-  for (const LeftOut& left : left_out(export_format(format), request, kRate)) terms.push_back(left.term);
+  for (const Omission& left : omissions(export_format(format), request, kRate)) terms.push_back(left.term);
   return terms;
 }
 
-TEST(Export, NamesWhatItLeavesOutWithItsSize) {
+TEST(Export, NamesWhatItOmitsWithItsSize) {
   InertialUnit<double> unit = full_unit(4);
   EXPECT_THAT(terms_left_out("json", unit), IsEmpty());
   EXPECT_THAT(terms_left_out("matlab", unit), IsEmpty());
@@ -407,7 +407,7 @@ TEST(Export, NamesWhatItLeavesOutWithItsSize) {
   bent.gyro.cubic << 2e-4, 0.0, 0.0;
   ExportRequest request;
   request.unit = bent;
-  const std::vector<LeftOut> left = left_out(export_format("vectornav"), request, kRate);
+  const std::vector<Omission> left = omissions(export_format("vectornav"), request, kRate);
   ASSERT_EQ(left.size(), 1U);
   EXPECT_NEAR(left[0].size.w.x(), 2e-4 * kRate * kRate * kRate, 1e-6 * kRate);
 }

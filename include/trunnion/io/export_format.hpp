@@ -48,7 +48,7 @@ const ExportFormat& export_format(const std::string& name);
 const std::vector<ExportFormat>& export_formats();
 
 /// Something of the unit that a target cannot say.
-struct LeftOut {
+struct Omission {
   std::string term;
   InertialSample<double> size;  ///< by how much it moves a reading, at most [rad/s, m/s^2]
 };
@@ -58,6 +58,6 @@ struct LeftOut {
 InertialSample<double> departure(const InertialUnit<double>& unit, const Exported& exported, double rate);
 
 /// What @p format leaves out of the unit, term by term, each with its size at @p rate and one g.
-std::vector<LeftOut> left_out(const ExportFormat& format, const ExportRequest& request, double rate);
+std::vector<Omission> omissions(const ExportFormat& format, const ExportRequest& request, double rate);
 
 }  // namespace trunnion::io
