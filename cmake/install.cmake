@@ -10,5 +10,5 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/trunnion-config-version.c
 file(RELATIVE_PATH TRUNNION_PREFIX_FROM_PC /p/${CMAKE_INSTALL_LIBDIR}/pkgconfig /p)
 configure_file(${CMAKE_CURRENT_LIST_DIR}/trunnion-core.pc.in ${PROJECT_BINARY_DIR}/trunnion-core.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/trunnion-config.cmake ${PROJECT_BINARY_DIR}/trunnion-config-version.cmake
-  ${CMAKE_CURRENT_LIST_DIR}/FindLcm.cmake ${CMAKE_CURRENT_LIST_DIR}/FindCompression.cmake DESTINATION ${destination})
-install(FILES ${PROJECT_BINARY_DIR}/trunnion-core.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+  ${CMAKE_CURRENT_LIST_DIR}/FindLcm.cmake ${CMAKE_CURRENT_LIST_DIR}/FindCompression.cmake DESTINATION ${destination} COMPONENT dev)
+install(FILES ${PROJECT_BINARY_DIR}/trunnion-core.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT dev)
