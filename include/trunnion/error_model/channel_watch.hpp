@@ -19,7 +19,8 @@ namespace trunnion {
 
 class ChannelWatch {
  public:
-  /// @param gyro_range, @param accel_range counts at which a reading of either sign is saturated, 1 to 2^30
+  /// @param gyro_range counts at which a reading of either sign is saturated, 1 to 2^30
+  /// @param accel_range the same of the accelerometers
   /// @param stuck_samples for which a channel may read the same at every sixteenth, 16 to 4000: a second or so; a unit
   /// whose noise is below a count wants more
   ChannelWatch(std::int32_t gyro_range, std::int32_t accel_range, int stuck_samples)

@@ -236,7 +236,7 @@ inline Result<CountCalibration> count_calibration(const InertialUnit<double>& un
   }
   if (!fits) return Status::kOutOfRange;
 
-  /// One triad. @param force an addition to each output, in full scales, and @param force_error in counts out
+  // one triad; force: an addition to each output, in full scales, and force_error in counts out
   const auto fold = [&](const Triad<double>& triad, const NominalScale<double>& counts, const Vec3<double>& thermal_1,
                         const Vec3<double>& thermal_2, const std::array<double, 3>& force,
                         const std::array<double, 3>& force_error, std::array<CountCoefficients::Axis, 3>& axes,

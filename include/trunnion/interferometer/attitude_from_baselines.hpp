@@ -85,7 +85,9 @@ typename V::Scalar joint_square(const V& first, const V& second) {
 
 }  // namespace kernel
 
-/// Eq. (2). @param first, @param second the same satellites in the same order
+/// Eq. (2).
+/// @param first the master to slave 1
+/// @param second the master to slave 2, the same satellites in the same order
 /// @param figure of the slaves from the master; its sigma is that of both lengths and the angle
 /// @tparam K candidates of either baseline
 /// @return as resolve_baseline(); kNotObservable too for slaves in one line with the master

@@ -62,7 +62,8 @@ struct BaselineSum {
   T square = T(0);                        ///< of the observations
 };
 
-/// Adds observations of e . b with the variances @p variance, clocks eliminated. @param observed(i) [m], of -e . b
+/// Adds observations of e . b with the variances @p variance, clocks eliminated.
+/// @param observed called with i [m], of -e . b
 template <class T, int N, class Observed, class Variance>
 void add_centred(const SingleDifferences<T, N>& set, const Observed& observed, const Variance& variance,
                  BaselineSum<T>& sum) {

@@ -191,7 +191,7 @@ struct SearchLimits {
 /// @p gap.
 ///
 /// @param z_float less whole numbers: around zero
-/// @param H called with z, after E(z) has been found small enough; @return never negative
+/// @param H called with z, after E(z) has been found small enough; what it returns is never negative
 template <int K, class T, int N, class Further>
 void integer_search(const Decorrelation<T, N>& of, const BoundedVector<T, N>& z_float, T radius, const T& gap,
                     const SearchLimits& limits, const Further& H, IntegerCandidates<T, N, K>& found) {

@@ -17,7 +17,9 @@
 
 namespace trunnion {
 
-/// @tparam Bits, @tparam MostSamples as for CountDemodulator; @tparam Bins a power of two
+/// @tparam Bits as for CountDemodulator
+/// @tparam MostSamples as there
+/// @tparam Bins a power of two
 template <int Bits, int MostSamples, int Bins = 64>
 class AngleBins {
   static_assert(Bins >= 8 && (Bins & (Bins - 1)) == 0, "bins: 8, 16, 32, 64 ...");

@@ -47,8 +47,12 @@ class SlowStates {
     P_ = first.cwiseAbs2().asDiagonal();
   }
 
-  /// A sample. @param m output across the axis, divided by sinc (sinc_correction()); @param sine, @param cosine of phi
-  /// in its middle; @param r the axial input; @param period since the last sample [s], positive
+  /// A sample.
+  /// @param m output across the axis, divided by sinc (sinc_correction())
+  /// @param sine of phi in its middle
+  /// @param cosine of phi in its middle
+  /// @param r the axial input
+  /// @param period since the last sample [s], positive
   void add(const Plane& m, const T& sine, const T& cosine, const T& r, const T& period) {
     for (int i = 0; i < 2; ++i) {
       P_(kBody + i, kBody + i) += noise_.body * noise_.body * period;

@@ -82,7 +82,7 @@ struct Pose {
   S latitude, longitude, height, roll, pitch, yaw;
 };
 
-/// @tparam Path callable: Pose<S> operator()(const S& t) for S = TimeJet<long double>
+/// @tparam Path callable: `Pose<S> operator()(const S& t)` for S of TimeJet, long double
 template <class Path>
 class PathTruth {
  public:

@@ -22,7 +22,8 @@ class Attitude {
   /// @param start finite and not zero; its length is made one
   explicit Attitude(const Quaternion<T>& start) : q_(kernel::normalized(kernel::quad(start))) {}
 
-  /// @param first, @param second integrals of w_ib_b over the two samples [rad]
+  /// @param first integral of w_ib_b over the earlier sample [rad]
+  /// @param second ... over the later one
   /// @return kOutOfRange, and nothing changed, when they are not finite or turn by more than half a radian
   TRUNNION_INLINE Status add(const Vec3<T>& first, const Vec3<T>& second) {
     using namespace kernel;
