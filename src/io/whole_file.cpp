@@ -90,8 +90,12 @@ std::string read_whole(const std::string& path, std::size_t most) {
   text.reserve(std::min(static_cast<std::size_t>(status.st_size), most) + 1);
   std::string block(kBlock, '\0');
   ssize_t got = 0;
-  while ((got = ::read(descriptor, block.data(), block.size())) > 0 && text.size() <= most)
+  while (text.size() <= most) {
+    got = ::read(descriptor, block.data(), block.size());
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) break;
     text.append(block.data(), static_cast<std::size_t>(got));
+  }
   if (got < 0) {
     const Error error = failed(path, "read");
     ::close(descriptor);

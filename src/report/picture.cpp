@@ -9,6 +9,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <cerrno>
 #include <cstdlib>
 #include <memory>
 
@@ -26,6 +27,7 @@ class TemporaryScript {
     std::size_t written = 0;
     while (written < text.size()) {
       const ssize_t count = ::write(file, text.data() + written, text.size() - written);
+      if (count < 0 && errno == EINTR) continue;
       if (count <= 0) break;
       written += static_cast<std::size_t>(count);
     }

@@ -1,0 +1,172 @@
+# SPDX-FileCopyrightText: 2026 the trunnion authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""faults.py <folder of the commands> <shim> <kills> [live]: every write, sync, rename and read of solve, apply, convert and export
+fails once; everything dribbles; and the commands are killed at random moments. An output is there whole, as without the
+fault, or it is not there. With live (in a network of its own, see tests/apps/isolated): imu_live is killed while it
+records, and what was in its journal once is in its recording in the end."""
+
+import os
+import random
+import signal
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+
+bin_folder, shim, kills = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2]), int(sys.argv[3])
+live = len(sys.argv) > 4
+random.seed(20261127)
+failures = []
+
+
+def command(name, *arguments):
+    return [os.path.join(bin_folder, name), *arguments]
+
+
+def run(arguments, fault="", **more):
+    environment = {**os.environ, "LD_PRELOAD": shim, "TRUNNION_FAULT": fault, **more} if fault else os.environ
+    return subprocess.run(arguments, env=environment, capture_output=True, text=True, errors="replace", timeout=300)
+
+
+def hold(law, what):
+    if not law:
+        failures.append(what)
+        print(f"FAILED: {what}")
+
+
+def content(path):
+    with open(path, "rb") as file:
+        return file.read()
+
+
+def left_over(folder):
+    return [name for name in os.listdir(folder) if ".part" in name]
+
+
+def every_call_fails(name, arguments, output, reference):
+    """The N-th call of each kind fails, for every N that there is."""
+    struck = 0
+    for kind in ("open", "write", "fsync", "rename", "read"):
+        done = run(arguments, f"{kind} 0", TRUNNION_CALLS="calls")
+        os.remove(output)
+        calls = int(content("calls"))
+        numbers = range(1, calls + 1) if calls <= 60 else sorted(random.sample(range(1, calls + 1), 60))
+        for number in numbers:
+            done = run(arguments, f"{kind} {number}")
+            struck += 1
+            at = f"{name}, {kind} {number} of {calls}"
+            if done.returncode == 0:  # what it could do without: a page of help, a list of processors
+                hold(content(output) == reference, f"{at}: ended well, and the output is another")
+                os.remove(output)
+                continue
+            hold(done.returncode == 3, f"{at}: exit {done.returncode}: {done.stderr[-200:]}")
+            hold(done.stderr.strip() != "", f"{at}: no word")
+            hold(not os.path.exists(output), f"{at}: an output of {os.path.exists(output) and os.path.getsize(output)} bytes")
+            hold(not left_over("."), f"{at}: {left_over('.')} is left")
+            for path in [output, *left_over(".")]:
+                if os.path.exists(path):
+                    os.remove(path)
+    for seed in range(3):
+        done = run(arguments, f"dribble {seed}")
+        hold(done.returncode == 0 and content(output) == reference, f"{name}, dribbling: exit {done.returncode} {done.stderr[-200:]}")
+    print(f"[ FIGURE   ] {name}: {struck} calls failed, one at a time; no output half-written")
+
+
+def killed(name, arguments, output, reference, times):
+    begin = time.perf_counter()
+    subprocess.run(arguments, capture_output=True, check=True)
+    duration = time.perf_counter() - begin
+    whole = 0
+    for _ in range(times):
+        if os.path.exists(output):
+            os.remove(output)
+        process = subprocess.Popen(arguments, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        time.sleep(random.uniform(0.0, 1.1 * duration))
+        process.kill()
+        process.wait()
+        if os.path.exists(output):
+            whole += 1
+            hold(content(output) == reference, f"{name}, killed: the output is not whole")
+        for path in left_over("."):
+            os.remove(path)
+    print(f"[ FIGURE   ] {name}: killed {times} times at random moments of {duration:.2f} s, {whole} times too late; no output half-written")
+
+
+def records(data):
+    """Length of the whole records that an LCM log begins with, and their number."""
+    at = count = 0
+    while at + 28 <= len(data):
+        sync, _, _, channel, size = struct.unpack_from(">IqqII", data, at)
+        if sync != 0xEDA1DA01 or at + 28 + channel + size > len(data):
+            break
+        at += 28 + channel + size
+        count += 1
+    return at, count
+
+
+def killed_live(times):
+    """Recording goes on over many deaths; what was in the journal at one of them is in the recording."""
+    os.mkdir("live")
+    for file in ("run.yaml", "rig.urdf", "sheet.yaml"):
+        with open(f"live/{file}", "wb") as out:
+            out.write(content(f"table/{file}"))
+    deaths = mount = 0
+    while deaths < times and mount < 3:
+        mount += 1
+        before = b""
+        replay = None
+        log = f"live/position_{mount}.lcm"
+        arguments = command("imu_live", "live/run.yaml", "--unattended", "--silence-s", "3", "--port", "0")
+        while deaths < times:
+            session = subprocess.Popen(arguments, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            if replay is None:
+                time.sleep(1.0)
+                replay = subprocess.Popen(command("imu_replay", f"table/position_{mount}.lcm", "--speed", "20"),
+                                          stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            time.sleep(random.uniform(0.05, 0.8))
+            ended = replay.poll() is not None
+            if not ended:
+                session.kill()
+                deaths += 1
+            else:
+                time.sleep(8.0)  # silence ends the mount
+                session.send_signal(signal.SIGINT)
+            session.wait()
+            path = log if os.path.exists(log) else log + ".part"
+            if os.path.exists(path):
+                data = content(path)
+                length, _ = records(data)
+                hold(data[:length].startswith(before), f"mount {mount}: what had been recorded is lost after {deaths} deaths")
+                if not ended:
+                    before = data[:length]
+            if ended:
+                hold(os.path.exists(log), f"mount {mount}: no recording after {deaths} deaths")
+                break
+        replay.kill()
+        replay.wait()
+        print(f"mount {mount}: {records(before)[1]} records survived, {deaths} deaths so far", flush=True)
+    print(f"[ FIGURE   ] imu_live: killed {deaths} times while it recorded; no record that was in its journal is lost")
+
+
+with tempfile.TemporaryDirectory() as folder:
+    os.chdir(folder)
+    subprocess.run(command("imu_calibrate", "simulate", "--seed", "7", "-o", "table"), capture_output=True, check=True)
+    if live:
+        killed_live(kills)
+    else:
+        subprocess.run(command("imu_calibrate", "solve", "table/run.yaml", "-o", "calibration.yaml"), capture_output=True, check=True)
+        subprocess.run(command("imu_calibrate", "simulate", "--rest-only", "-o", "rest"), capture_output=True, check=True)
+        jobs = [
+            ("solve", command("imu_calibrate", "solve", "table/run.yaml", "-o", "solved.yaml"), "solved.yaml", 0.2),
+            ("apply", command("imu_calibrate", "apply", "calibration.yaml", "table/position_1.lcm", "-o", "applied.lcm"), "applied.lcm", 0.4),
+            ("convert", command("imu_calibrate", "convert", "table/position_1.lcm", "-o", "converted.mcap"), "converted.mcap", 0.4),
+        ]
+        for name, arguments, output, share in jobs:
+            subprocess.run(arguments, capture_output=True, check=True)
+            reference = content(output)
+            every_call_fails(name, arguments, output, reference)
+            if kills > 0:
+                killed(name, arguments, output, reference, round(kills * share))
+print(f"{len(failures)} failures")
+sys.exit(bool(failures))
