@@ -18,6 +18,7 @@ bin_folder, shim, kills = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv
 live = len(sys.argv) > 4
 random.seed(20261127)
 failures = []
+QUIET = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
 
 
 def command(name, *arguments):
@@ -115,37 +116,32 @@ def killed_live(times):
     while deaths < times and mount < 3:
         mount += 1
         before = b""
-        replay = None
         log = f"live/position_{mount}.lcm"
-        arguments = command("imu_live", "live/run.yaml", "--unattended", "--silence-s", "3", "--port", "0")
-        while deaths < times:
-            session = subprocess.Popen(arguments, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-            if replay is None:
-                time.sleep(1.0)
-                replay = subprocess.Popen(command("imu_replay", f"table/position_{mount}.lcm", "--speed", "20"),
-                                          stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        session = subprocess.Popen(command("imu_live", "live/run.yaml", "--unattended", "--silence-s", "3", "--port", "0"), **QUIET)
+        time.sleep(1.0)
+        replay = subprocess.Popen(command("imu_replay", f"table/position_{mount}.lcm", "--speed", "20", "--end", "650"), **QUIET)
+        while deaths < times and replay.poll() is None:
             time.sleep(random.uniform(0.05, 0.8))
-            ended = replay.poll() is not None
-            if not ended:
-                session.kill()
-                deaths += 1
-            else:
-                time.sleep(8.0)  # silence ends the mount
-                session.send_signal(signal.SIGINT)
+            session.kill()
             session.wait()
-            path = log if os.path.exists(log) else log + ".part"
-            if os.path.exists(path):
-                data = content(path)
-                length, _ = records(data)
-                hold(data[:length].startswith(before), f"mount {mount}: what had been recorded is lost after {deaths} deaths")
-                if not ended:
-                    before = data[:length]
-            if ended:
-                hold(os.path.exists(log), f"mount {mount}: no recording after {deaths} deaths")
-                break
+            deaths += 1
+            data = content(log + ".part") if os.path.exists(log + ".part") else b""
+            length, _ = records(data)
+            hold(data[:length].startswith(before), f"mount {mount}: what had been recorded is lost after {deaths} deaths")
+            before = data[:length]
+            session = subprocess.Popen(command("imu_live", "live/run.yaml", "--unattended", "--silence-s", "3", "--port", "0"), **QUIET)
         replay.kill()
         replay.wait()
-        print(f"mount {mount}: {records(before)[1]} records survived, {deaths} deaths so far", flush=True)
+        # the rest of it, then silence: the mount is recorded
+        subprocess.run(command("imu_replay", f"table/position_{mount}.lcm", "--speed", "20", "--start", "651"), **QUIET)
+        for _ in range(40):
+            if os.path.exists(log):
+                break
+            time.sleep(0.5)
+        session.send_signal(signal.SIGINT)
+        session.wait()
+        hold(os.path.exists(log) and content(log).startswith(before), f"mount {mount}: the recording is not what was recorded")
+        print(f"mount {mount}: {records(before)[1]} records outlived {deaths} deaths", flush=True)
     print(f"[ FIGURE   ] imu_live: killed {deaths} times while it recorded; no record that was in its journal is lost")
 
 
