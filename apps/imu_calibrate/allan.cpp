@@ -248,7 +248,9 @@ void add_allan(CLI::App& app, ExitCode& exit_code) {
   CLI::App* command =
       app.add_subcommand("allan", "Noise of a unit at rest: Allan deviation, its terms, and a sensor sheet");
   auto o = std::make_shared<Options>();
-  command->add_option("input", o->input, "LCM log, CSV, or the run file of a recording, of a unit that lay still")
+  command
+      ->add_option("input", o->input,
+                   "A log of any format that is read, or the run file of a recording, of a unit that lay still")
       ->required();
   command->add_option("-o,--output", o->output, "CSV of the curves to write, with 1 sigma limits");
   command->add_option("--sheet", o->sheet, "Sensor sheet to write: white noise and Gauss-Markov wander");

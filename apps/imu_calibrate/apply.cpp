@@ -28,26 +28,26 @@ struct Options {
   int of_run = 0;
 };
 
-/// Corrects samples and passes them on.
+/// Corrects samples and passes them on, with all else that is told.
 class Corrected final : public SampleSink {
  public:
-  using Write = std::function<void(std::int64_t, const InertialSample<double>&)>;
-  Corrected(const InertialUnit<double>& unit, Write write) : correction_(unit), write_(std::move(write)) {}
+  Corrected(const InertialUnit<double>& unit, SampleSink& to) : correction_(unit), to_(to) {}
   void imu(std::int64_t utime, const InertialSample<double>& sample) override {
     ++samples_;
-    write_(utime, correction_.correct(1e-6 * static_cast<double>(utime), sample));
+    to_.imu(utime, correction_.correct(1e-6 * static_cast<double>(utime), sample));
   }
   void temperature(double celsius) override {
     has_temperature_ = true;
     correction_.set_temperature(celsius);
+    to_.temperature(celsius);
   }
-  void encoder(std::int64_t, double, double) override {}
+  void encoder(std::int64_t utime, double azimuth, double pitch) override { to_.encoder(utime, azimuth, pitch); }
   [[nodiscard]] long long samples() const { return samples_; }
   [[nodiscard]] bool has_temperature() const { return has_temperature_; }
 
  private:
   StreamCorrection<double> correction_;
-  Write write_;
+  SampleSink& to_;
   bool has_temperature_ = false;
   long long samples_ = 0;
 };
@@ -92,35 +92,31 @@ long long apply_to_log(const io::RecordingFiles& files, const io::LogChannels& c
 /// Through the same reader as solve: columns and raw counts as the run file says.
 long long apply_to_table(const Options& o, const io::RunFile& run, const io::RecordingFiles& files,
                          const InertialUnit<double>& unit) {
-  io::WholeFile out(o.output);
-  out.write(io::imu_csv_header());
-  std::string row;
-  Corrected sink(unit, [&](std::int64_t utime, const InertialSample<double>& sample) {
-    row.clear();
-    io::append_imu_csv(1e-6 * static_cast<double>(utime), sample, row);
-    out.write(row);
-  });
+  const std::unique_ptr<io::LogWriter> out = io::format_by_name("csv").write(o.output);
+  Corrected sink(unit, *out);
   std::vector<std::pair<std::string, std::string>> digests;
-  io::read_recording(run, files, sink, digests);
+  const io::LogLosses losses = io::read_recording(run, files, sink, digests);
   if (sink.samples() == 0) throw io::input_error(o.input, 0, "", "has no samples");
   if (unit.thermal.order() > 0 && !sink.has_temperature())
     std::fprintf(stderr, "%s: has terms of temperature, and the table has none (temperature_deg_c): at %s degC\n",
                  o.calibration.c_str(), figure(unit.thermal.reference, 4).c_str());
-  out.commit();
+  out->commit();
+  say_losses(losses);
   return sink.samples();
 }
 
 void apply(const Options& o) {
   auto [run, files] = one_recording(o.input, o.channel, o.of_run);
   files.encoder.clear();
-  const io::LogFormat& format = io::format_of(files.name());
-  const bool is_log = !files.log.empty() && std::string(format.name) == "lcm";
-  if (is_log == (std::filesystem::path(o.output).extension() == ".csv"))
-    throw Error(ExitCode::kUsage, o.output + (is_log ? ": a corrected LCM log is no table: name it .lcm"
-                                                     : std::string(": a corrected ") + format.title + " is a .csv"));
   std::vector<std::string> sources = files_of(run);
   sources.insert(sources.end(), {o.input, o.calibration});
   keep_inputs(o.output, sources);
+  const io::LogFormat& format = io::format_of(files.name());
+  const bool is_log = !files.log.empty() && std::string(format.name) == "lcm";
+  if (std::filesystem::path(o.output).extension() != (is_log ? ".lcm" : ".csv"))
+    throw Error(ExitCode::kUsage, o.output + (is_log ? ": a corrected LCM log is a .lcm"
+                                                     : std::string(": a corrected ") + format.title + " is a .csv"));
+  if (!is_log) keep_inputs(io::encoder_table_of(o.output), sources);
   long long samples = 0;
   if (!is_log) {
     const InertialUnit<double> unit = io::unit_of(io::read_calibration_file(o.calibration), o.calibration, o.recording);
@@ -147,9 +143,13 @@ void add_apply(CLI::App& app, ExitCode& exit_code) {
                    "A log of any format that is read (imu_calibrate convert --help); or the run file of a recording "
                    "(columns, raw counts), with --of-run")
       ->required();
-  command->add_option("-o,--output", o->output, "Corrected file to write; other channels of a log are copied")
+  command
+      ->add_option("-o,--output", o->output,
+                   "Corrected file to write; other channels of an LCM log are copied, encoders of another log go to "
+                   "NAME_encoder.csv")
       ->required();
-  command->add_option("--channel", o->channel, "IMU channel of the log; default IMU");
+  command->add_option("--channel", o->channel,
+                      "Channel or topic of the unit; default IMU in an LCM log; else the only one");
   command->add_option("--of-run", o->of_run, "Of a run file with several: the recording to correct, from 1")
       ->check(CLI::Range(1, 1000));
   command

@@ -93,6 +93,7 @@ void convert(const Options& o) {
   std::vector<std::string> sources = files_of(run);
   sources.insert(sources.end(), {o.input});
   keep_inputs(o.output, sources);
+  if (std::string(format.name) == "csv") keep_inputs(io::encoder_table_of(o.output), sources);
   Readings apart;
   io::LogLosses lost;
   if (!files.encoder.empty()) {
@@ -118,9 +119,8 @@ void convert(const Options& o) {
   std::printf("\n");
   if (sink.has_temperature && !writer->holds_temperature())
     std::fprintf(stderr, "%s: the temperature is left out: this format has no place for it\n", o.output.c_str());
-  const long long records = losses.records + lost.records;
-  if (records > 0)
-    std::fprintf(stderr, "%lld damaged records, %lld bytes passed over\n", records, losses.bytes + lost.bytes);
+  say_losses(losses);
+  say_losses(lost);
 }
 
 }  // namespace
@@ -146,8 +146,9 @@ void add_convert(CLI::App& app, ExitCode& exit_code) {
       ->required();
   command->add_option("--format", o->format, "To write; default by the output's extension")
       ->check(CLI::IsMember(names));
-  command->add_option("--channel", o->channel,
-                      "Channel or topic of the unit; default IMU in an LCM log, else the only one");
+  command->add_option(
+      "--channel", o->channel,
+      "Channel or topic of the unit; default IMU in an LCM log; else the only one, in a ULog sensor_combined");
   command->add_option("--of-run", o->of_run, "Of a run file with several: the recording to convert, from 1")
       ->check(CLI::Range(1, 1000));
   command->footer("Example:\n  imu_calibrate convert recording.mcap -o recording.lcm");

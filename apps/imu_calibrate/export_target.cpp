@@ -21,7 +21,7 @@ namespace {
 
 /// MATLAB calls a function by the name of its file.
 std::string function_of(const std::string& output) {
-  const std::string stem = std::filesystem::path(output).stem().string();
+  std::string stem = std::filesystem::path(output).stem().string();
   bool is_name = !stem.empty() && std::isalpha(static_cast<unsigned char>(stem[0])) != 0 && stem.size() < 64;
   for (const char c : stem) is_name = is_name && (std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_');
   if (!is_name)
@@ -32,8 +32,8 @@ std::string function_of(const std::string& output) {
 
 std::string sizes(const InertialSample<double>& size) {
   std::string text;
-  if (size.w.maxCoeff() > 0.0) text += figure(size.w.maxCoeff() / kRadPerDeg, 3) + " deg/s";
-  if (size.f.maxCoeff() > 0.0) text += (text.empty() ? "" : " and ") + figure(size.f.maxCoeff(), 3) + " m/s^2";
+  if (size.w.maxCoeff() > 1e-9) text += figure(size.w.maxCoeff() / kRadPerDeg, 3) + " deg/s";
+  if (size.f.maxCoeff() > 1e-9) text += (text.empty() ? "" : " and ") + figure(size.f.maxCoeff(), 3) + " m/s^2";
   return text;
 }
 
@@ -61,6 +61,7 @@ void export_to_target(const TargetOptions& o) {
   request.name = file.model + (file.serial.empty() ? "" : " " + file.serial);
   request.gyro_id = o.gyro_id;
   request.accel_id = o.accel_id;
+  request.instance = o.instance;
   if (!o.sheet.empty()) request.sheet = io::read_sensor_sheet(o.sheet);
   if (o.format == "matlab") request.function = function_of(o.output);
   request.notes = {"Written by " + tool_name() + " from " + io::printable(o.calibration),

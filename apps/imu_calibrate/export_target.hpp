@@ -19,6 +19,7 @@ struct TargetOptions {
   double rate_deg_per_s = 100.0;  // at which the sizes of what is left out are stated
   long long gyro_id = 0;
   long long accel_id = 0;
+  int instance = 0;
 };
 
 /// The names of the formats, and what each is.

@@ -178,7 +178,9 @@ Json inspect_recording(const io::RunFile& run, const io::RecordingFiles& files, 
   InspectSink sink(files.name(), {run.sheet.gyro_range, run.sheet.accel_range});
   std::vector<std::pair<std::string, std::string>> digests;
   try {
-    io::read_recording(run, files, sink, digests);
+    const io::LogLosses losses = io::read_recording(run, files, sink, digests);
+    if (!json.contains("lost")) json["lost"] = {{"records", losses.records}, {"bytes", losses.bytes}};
+    if (!losses.note.empty()) json["note"] = losses.note;
   } catch (const Error& e) {
     if (!json.contains("channels")) throw;
     json["refused"] = e.what();  // the channels are what is there to see
@@ -212,6 +214,10 @@ void print_text(const Json& all) {
     if (one.contains("channels")) print_channels(one);
     if (one.contains("imu")) print_channel("IMU", one["imu"]);
     if (one.contains("encoder")) print_channel("encoder", one["encoder"]);
+    if (!one.contains("channels") && one.contains("lost") && one["lost"]["bytes"].get<long long>() > 0)
+      std::printf("  lost to damage: %lld records, %lld bytes\n", one["lost"]["records"].get<long long>(),
+                  one["lost"]["bytes"].get<long long>());
+    if (one.contains("note")) std::printf("  note: %s\n", one["note"].get<std::string>().c_str());
     if (one.contains("refused"))
       std::printf("  solve would refuse it: %s\n", one["refused"].get<std::string>().c_str());
     if (one.contains("rests")) {

@@ -49,6 +49,7 @@ void collect(RunInputs& inputs, std::vector<RunInputs>& each) {
     inputs.losses.records += one.losses.records;
     inputs.losses.bytes += one.losses.bytes;
     inputs.losses.samples += one.losses.samples;
+    if (!one.losses.note.empty()) inputs.losses.note += (inputs.losses.note.empty() ? "" : "; ") + one.losses.note;
     for (auto& digest : one.digests) inputs.digests.push_back(std::move(digest));
   }
 }
@@ -92,6 +93,12 @@ OneRecording one_recording(const std::string& input, const std::string& channel,
     one.files.log = input;
   }
   return one;
+}
+
+void say_losses(const io::LogLosses& losses) {
+  if (losses.records > 0)
+    std::fprintf(stderr, "%lld damaged records, %lld bytes passed over\n", losses.records, losses.bytes);
+  if (!losses.note.empty()) std::fprintf(stderr, "note: %s\n", losses.note.c_str());
 }
 
 void BeforeAndAfter::say_what_is_missing(const InertialUnit<double>& unit, const std::string& name) const {

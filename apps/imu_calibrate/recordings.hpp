@@ -42,6 +42,9 @@ struct OneRecording {
 /// @param channel of the log; empty: the default. @throws Error (usage, input)
 OneRecording one_recording(const std::string& input, const std::string& channel, int of_run);
 
+/// On standard error: what was damaged, and what else was not read.
+void say_losses(const io::LogLosses& losses);
+
 /// How a recording of the run is compressed, whether it is read or comes live.
 calibration::CompressOptions compress_options(const io::RunFile& run, const io::RecordingFiles& files);
 

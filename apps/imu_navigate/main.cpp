@@ -213,8 +213,9 @@ std::vector<std::string> names(const std::map<std::string, V>& values) {
 }
 
 void add_options(CLI::App& app, Options& o) {
-  app.add_option("log", o.source.log,
-                 "LCM log, or CSV with the header t_s,gyro_x_rad_s,...,accel_z_m_s2 (units by name)")
+  app.add_option(
+         "log", o.source.log,
+         "A log of any format that is read (imu_calibrate convert --help); columns of another table: convert it first")
       ->required();
   app.add_option("--channel", o.source.channel,
                  "Of the unit in a log: channel or topic; default IMU in an LCM log, else the only one");

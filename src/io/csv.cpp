@@ -32,7 +32,8 @@ struct Unit {
 
 constexpr std::array<Unit, 5> kTimeUnits = {
     {{"s", "_s", 1.0}, {"ms", "_ms", 1e-3}, {"us", "_us", 1e-6}, {"ns", "_ns", 1e-9}, {"100us", "_100us", 1e-4}}};
-constexpr std::array<Unit, 1> kWeekUnits = {{{"weeks", "_weeks", 604800.0}}};
+constexpr std::array<Unit, 1> kWeekUnits = {{{"weeks", "_weeks", 604800.0}}};  // of GPS
+constexpr double kGpsEpoch = 315964800.0;                                      // s since 1970, leap seconds not counted
 constexpr std::array<Unit, 3> kRateUnits = {
     {{"rad/s", "_rad_s", 1.0}, {"deg/s", "_deg_s", kRadPerDeg}, {"deg/h", "_deg_h", kRadPerSPerDegPerH}}};
 constexpr std::array<Unit, 3> kForceUnits = {
@@ -91,11 +92,14 @@ bool starts_number(const char* p, const char* end) {
   return p != end && ((*p >= '0' && *p <= '9') || *p == '.');
 }
 
+bool is_utf_16(std::string_view text) { return text.substr(0, 2) == "\xff\xfe" || text.substr(0, 2) == "\xfe\xff"; }
+
 class Table {
  public:
   Table(const std::string& path, Sha256* digest) : path_(path), text_(read_whole(path)) {
     if (digest != nullptr) digest->update(text_);
     if (text_.find_first_not_of(" \t\r\n") == std::string::npos) throw input_error(path_, 0, "", "is empty");
+    if (is_utf_16(text_)) throw input_error(path_, 0, "", "is a text in UTF-16: save it as UTF-8");
     next_ = text_.data();
     end_ = next_ + text_.size();
     if (std::string_view(text_).substr(0, kByteOrderMark.size()) == kByteOrderMark) next_ += kByteOrderMark.size();
@@ -518,7 +522,7 @@ LogLosses read_csv(const LogRequest& request, SampleSink& sink) {
     const double t = table.microseconds();
     if (wraps_at > 0.0 && rows > 0 && last - t > 0.5 * wraps_at) wrapped += wraps_at;
     last = t;
-    const std::int64_t utime = to_utime(t + wrapped + (week > 0 ? 1e6 * v[week] : 0.0), table);
+    const std::int64_t utime = to_utime(t + wrapped + (week > 0 ? 1e6 * (kGpsEpoch + v[week]) : 0.0), table);
     if (temperature > 0 && std::isfinite(v[temperature])) sink.temperature(v[temperature]);  // a slow one: empty cells
     if (request.need_imu) sink.imu(utime, {Vec3<double>(v[1], v[2], v[3]), Vec3<double>(v[4], v[5], v[6])});
     if (request.need_encoder) sink.encoder(utime, v[angles], v[angles + 1]);
@@ -529,6 +533,7 @@ LogLosses read_csv(const LogRequest& request, SampleSink& sink) {
 
 /// Text, for the most part ASCII.
 bool is_text(std::string_view head) {
+  if (is_utf_16(head)) return true;
   if (head.substr(0, kByteOrderMark.size()) == kByteOrderMark) head.remove_prefix(kByteOrderMark.size());
   std::size_t high = 0;
   for (const char c : head) {
@@ -549,29 +554,19 @@ void append_number(std::string& out, double value, char after) {
 /// Samples in one table, readings of encoders in another beside it.
 class CsvWriter final : public LogWriter {
  public:
-  explicit CsvWriter(const std::string& path) : path_(path), samples_(path) {}
+  explicit CsvWriter(const std::string& path) : path_(path), samples_(path) { samples_.write(imu_csv_header(true)); }
   void imu(std::int64_t utime, const InertialSample<double>& sample) override {
-    if (rows_++ == 0) samples_.write(imu_csv_header(told_));
     row_.clear();
     append_imu_csv(1e-6 * static_cast<double>(utime), sample, row_);
-    if (told_) {
-      row_.back() = ',';
-      if (std::isfinite(celsius_))
-        append_number(row_, celsius_, '\n');
-      else
-        row_ += '\n';
-    }
+    row_.back() = ',';
+    if (std::isfinite(celsius_)) append_number(row_, celsius_, '\n');
+    if (row_.back() != '\n') row_ += '\n';
     samples_.write(row_);
   }
-  void temperature(double celsius) override {
-    if (rows_ == 0) told_ = true;
-    late_ = late_ || !told_;
-    celsius_ = celsius;
-  }
+  void temperature(double celsius) override { celsius_ = celsius; }
   void encoder(std::int64_t utime, double azimuth, double pitch) override {
     if (!readings_) {
-      const std::filesystem::path path(path_);
-      encoder_path_ = (path.parent_path() / (path.stem().string() + "_encoder" + path.extension().string())).string();
+      encoder_path_ = encoder_table_of(path_);
       readings_.emplace(encoder_path_);
       readings_->write("t_s,azimuth_rad,pitch_rad\n");
     }
@@ -582,9 +577,14 @@ class CsvWriter final : public LogWriter {
     readings_->write(row_);
   }
   void commit() override {
-    if (late_) throw input_error(path_, 0, "temperature", "is told only after the first sample: no table of it");
     if (readings_) readings_->commit();
-    samples_.commit();
+    try {
+      samples_.commit();
+    } catch (...) {
+      std::error_code ignored;
+      if (readings_) std::filesystem::remove(encoder_path_, ignored);  // both, or neither
+      throw;
+    }
   }
   [[nodiscard]] std::vector<std::string> files() const override {
     return readings_ ? std::vector<std::string>{path_, encoder_path_} : std::vector<std::string>{path_};
@@ -596,13 +596,15 @@ class CsvWriter final : public LogWriter {
   WholeFile samples_;
   std::optional<WholeFile> readings_;
   std::string row_;
-  bool told_ = false;
-  bool late_ = false;
   double celsius_ = std::nan("");
-  long long rows_ = 0;
 };
 
 }  // namespace
+
+std::string encoder_table_of(const std::string& path) {
+  const std::filesystem::path table(path);
+  return (table.parent_path() / (table.stem().string() + "_encoder" + table.extension().string())).string();
+}
 
 std::string imu_csv_header(bool temperature) {
   return std::string("t_s,gyro_x_rad_s,gyro_y_rad_s,gyro_z_rad_s,accel_x_m_s2,accel_y_m_s2,accel_z_m_s2") +

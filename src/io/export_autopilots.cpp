@@ -41,8 +41,8 @@ Exported exported(const ExportRequest& request, const Parameters& p) {
     return InertialSample<double>{y.w - p.gyro_offset, (y.f - p.accel_offset).cwiseProduct(p.accel_scale)};
   };
   out.advice.emplace_back(
-      "it holds for readings as the driver gives them: those of a log have the vehicle's own offsets and scales in "
-      "them, unless they were 0 and 1");
+      "it holds for readings in the sensor's own axes, as the driver gives them: those of a log have the vehicle's "
+      "offsets, scales and rotations in them, unless they were 0, 1 and none");
   return out;
 }
 
@@ -52,17 +52,18 @@ Exported px4(const ExportRequest& request) {
   const auto line = [&](const std::string& name, const std::string& value, const char* type) {
     out.text += "1\t1\t" + name + "\t" + value + "\t" + type + "\n";
   };
+  const std::string accel = "CAL_ACC" + std::to_string(request.instance);
+  const std::string gyro = "CAL_GYRO" + std::to_string(request.instance);
   out.text += "#\n# Vehicle-Id Component-Id Name Value Type\n";
-  if (request.accel_id != 0) line("CAL_ACC0_ID", std::to_string(request.accel_id), "6");
-  if (request.gyro_id != 0) line("CAL_GYRO0_ID", std::to_string(request.gyro_id), "6");
+  if (request.accel_id != 0) line(accel + "_ID", std::to_string(request.accel_id), "6");
+  if (request.gyro_id != 0) line(gyro + "_ID", std::to_string(request.gyro_id), "6");
   if (request.accel_id == 0 || request.gyro_id == 0)
-    out.advice.emplace_back(
-        "PX4 takes the numbers for the device whose id CAL_ACC0_ID and CAL_GYRO0_ID hold: state --accel-id and "
-        "--gyro-id, or see that they are there");
+    out.advice.emplace_back("PX4 takes the numbers for the device whose id " + accel + "_ID and " + gyro +
+                            "_ID hold: state --accel-id and --gyro-id, or see that they are there");
   constexpr const char* kAxes = "XYZ";
-  for (int i = 0; i < 3; ++i) line(std::string("CAL_ACC0_") + kAxes[i] + "OFF", nine_digits(p.accel_offset(i)), "9");
-  for (int i = 0; i < 3; ++i) line(std::string("CAL_ACC0_") + kAxes[i] + "SCALE", nine_digits(p.accel_scale(i)), "9");
-  for (int i = 0; i < 3; ++i) line(std::string("CAL_GYRO0_") + kAxes[i] + "OFF", nine_digits(p.gyro_offset(i)), "9");
+  for (int i = 0; i < 3; ++i) line(accel + "_" + kAxes[i] + "OFF", nine_digits(p.accel_offset(i)), "9");
+  for (int i = 0; i < 3; ++i) line(accel + "_" + kAxes[i] + "SCALE", nine_digits(p.accel_scale(i)), "9");
+  for (int i = 0; i < 3; ++i) line(gyro + "_" + kAxes[i] + "OFF", nine_digits(p.gyro_offset(i)), "9");
   out.advice.emplace_back("restart the vehicle after loading: several versions pass over a change below 0.01");
   return out;
 }
@@ -71,11 +72,17 @@ Exported ardupilot(const ExportRequest& request) {
   const Parameters p = parameters_of(request.unit);
   Exported out = exported(request, p);
   const auto line = [&](const std::string& name, double value) { out.text += name + "," + nine_digits(value) + "\n"; };
+  const std::string which = request.instance == 0 ? "" : std::to_string(request.instance + 1);
+  const std::string accel = "INS_ACC" + which;
+  const std::string gyro = which.empty() ? "INS_GYROFFS_" : "INS_GYR" + which + "OFFS_";
   constexpr const char* kAxes = "XYZ";
-  for (int i = 0; i < 3; ++i) line(std::string("INS_ACCOFFS_") + kAxes[i], p.accel_offset(i));
-  for (int i = 0; i < 3; ++i) line(std::string("INS_ACCSCAL_") + kAxes[i], p.accel_scale(i));
-  for (int i = 0; i < 3; ++i) line(std::string("INS_GYROFFS_") + kAxes[i], p.gyro_offset(i));
-  line("INS_GYR_CAL", 0.0);  // else the offsets of the gyros are measured anew at every start
+  for (int i = 0; i < 3; ++i) line(accel + "OFFS_" + kAxes[i], p.accel_offset(i));
+  for (int i = 0; i < 3; ++i) line(accel + "SCAL_" + kAxes[i], p.accel_scale(i));
+  for (int i = 0; i < 3; ++i) line(gyro + kAxes[i], p.gyro_offset(i));
+  out.text += "# the offsets of the gyros are not measured anew at every start\n";
+  line("INS_GYR_CAL", 0.0);
+  out.advice.emplace_back(
+      "INS_GYR_CAL is 0 in the file: the vehicle no longer measures its gyros' offsets at every start");
   if (p.accel_offset.cwiseAbs().maxCoeff() > 3.5 || p.accel_scale.minCoeff() < 0.8 || p.accel_scale.maxCoeff() > 1.2)
     out.advice.emplace_back(
         "ArduPilot documents offsets to 3.5 m/s^2 and scales from 0.8 to 1.2, and these are beyond");

@@ -19,7 +19,7 @@ using Unit = InertialUnit<double>;
 
 /// Axes and the corners of the cube: a sum of terms is largest at one of them, or near.
 const std::vector<Vec3<double>>& directions() {
-  static const std::vector<Vec3<double>> all = [] {
+  static const std::vector<Vec3<double>> kAll = [] {
     std::vector<Vec3<double>> list;
     for (int x = -1; x <= 1; ++x) {
       for (int y = -1; y <= 1; ++y) {
@@ -30,7 +30,7 @@ const std::vector<Vec3<double>>& directions() {
     }
     return list;
   }();
-  return all;
+  return kAll;
 }
 
 InertialSample<double> larger(const InertialSample<double>& a, const InertialSample<double>& b) {
@@ -44,7 +44,7 @@ struct Term {
 
 /// Each puts one thing of a unit into a perfect one.
 const std::vector<Term>& terms() {
-  static const std::vector<Term> all = {
+  static const std::vector<Term> kAll = {
       {"gyro bias", [](const Unit& from, Unit& to) { to.gyro.bias = from.gyro.bias; }},
       {"gyro scale", [](const Unit& from, Unit& to) { to.gyro.M.diagonal() = from.gyro.M.diagonal(); }},
       {"gyro cross-coupling",
@@ -67,7 +67,7 @@ const std::vector<Term>& terms() {
       {"accelerometer quadratic", [](const Unit& from, Unit& to) { to.accel.quadratic = from.accel.quadratic; }},
       {"accelerometer cubic", [](const Unit& from, Unit& to) { to.accel.cubic = from.accel.cubic; }},
   };
-  return all;
+  return kAll;
 }
 
 /// Over the range of the calibration, or ten kelvins from its reference where it states none.
@@ -75,8 +75,11 @@ InertialSample<double> size_of_temperature(const Unit& unit, double rate) {
   InertialSample<double> size;
   const auto& thermal = unit.thermal;
   const bool bounded = std::isfinite(thermal.lowest) && std::isfinite(thermal.highest);
-  for (const double celsius :
-       {bounded ? thermal.lowest : thermal.reference - 10.0, bounded ? thermal.highest : thermal.reference + 10.0}) {
+  const double from = bounded ? thermal.lowest : thermal.reference - 10.0;
+  const double to = bounded ? thermal.highest : thermal.reference + 10.0;
+  constexpr int kPlaces = 64;  // a polynomial may be largest within
+  for (int k = 0; k <= kPlaces; ++k) {
+    const double celsius = from + (to - from) * k / kPlaces;
     const auto bias = thermal.at(celsius, thermal.bias);
     const auto scale = thermal.at(celsius, thermal.scale);
     size = larger(size, {bias.w.cwiseAbs() + rate * scale.w.cwiseAbs(),
@@ -95,9 +98,9 @@ InertialSample<double> size_of_places(const Unit& unit, double rate) {
 }  // namespace
 
 const std::vector<ExportFormat>& export_formats() {
-  static const std::vector<ExportFormat> formats = {kKalibrExport,    kOpenVinsExport,  kRosExport,    kPx4Export,
-                                                    kArduPilotExport, kVectorNavExport, kMatlabExport, kJsonExport};
-  return formats;
+  static const std::vector<ExportFormat> kFormats = {kKalibrExport,    kOpenVinsExport,  kRosExport,    kPx4Export,
+                                                     kArduPilotExport, kVectorNavExport, kMatlabExport, kJsonExport};
+  return kFormats;
 }
 
 const ExportFormat& export_format(const std::string& name) {

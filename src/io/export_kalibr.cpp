@@ -41,10 +41,15 @@ std::string noise(const char* sensor, const TriadNoise& noise) {
 std::string common(const ExportRequest& request, std::vector<std::string>& advice) {
   std::string text;
   if (request.sheet.has_noise) {
+    if (request.sheet.noise.accel.wander == 0.0 || request.sheet.noise.gyro.wander == 0.0)
+      advice.emplace_back(
+          "the sheet states no bias instability: its random walk is 0 in the file, and the reader refuses that");
     text += noise("accelerometer", request.sheet.noise.accel) + noise("gyroscope", request.sheet.noise.gyro);
   } else {
-    advice.emplace_back("the noise is not in the file, and its reader wants it: state it, or name a --sheet");
+    advice.emplace_back("the noise is not in the file, and its reader wants it: name a --sheet that states it");
   }
+  if (request.sheet.has_noise && !(request.sheet.rate_hz > 0.0))
+    advice.emplace_back("the sheet states no rate_hz: the file has no update_rate, which its reader wants");
   if (request.sheet.rate_hz > 0.0) text += "  update_rate: " + exactly(request.sheet.rate_hz) + "\n";
   return text + "  rostopic: /imu0\n  time_offset: 0.0\n";
 }

@@ -57,6 +57,7 @@ Exported matlab(const ExportRequest& request) {
             orders("g.scale_k", unit.thermal, false, true) + orders("a.scale_k", unit.thermal, false, false);
     text +=
         "t = min(max(celsius(:), lowest), highest) - reference;\n"
+        "t(isnan(celsius(:))) = 0;  % not known\n"
         "if numel(t) == 1, t = repmat(t, size(gyro, 1), 1); end\n"
         "powers = t .^ (1:" +
         std::to_string(unit.thermal.order()) +

@@ -12,12 +12,12 @@ namespace trunnion::io {
 namespace {
 
 Exported ros(const ExportRequest& request) {
-  const Mat3<double> SM = request.unit.accel.matrix().inverse();
-  const Vec3<double> bias = SM * request.unit.accel.bias;
+  const Mat3<double> A = request.unit.accel.matrix().inverse();
+  const Vec3<double> bias = A * request.unit.accel.bias;
   Exported out;
-  out.text = commented(request, "#") + "# corrected f [m/s^2] = SM * measured f - bias; SM by rows\nSM: [" +
-             listed(SM) + "]\nbias: [" + listed(bias) + "]\n";
-  out.correct = [SM, bias](const InertialSample<double>& y) { return InertialSample<double>{y.w, SM * y.f - bias}; };
+  out.text = commented(request, "#") + "# corrected f [m/s^2] = SM * measured f - bias; SM by rows\nSM: [" + listed(A) +
+             "]\nbias: [" + listed(bias) + "]\n";
+  out.correct = [A, bias](const InertialSample<double>& y) { return InertialSample<double>{y.w, A * y.f - bias}; };
   out.advice.emplace_back("imu_calib has nothing for gyros but their mean at start-up");
   return out;
 }

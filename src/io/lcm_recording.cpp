@@ -186,7 +186,7 @@ LogLosses read_lcm_recording(const LogRequest& request, SampleSink& sink) {
     throw input_error(request.path, 0, "", "no usable message on the encoder channel '" + encoder + "'" + others_named);
   }
   return {log.lost_records() + decoder.damaged_records(), log.lost_bytes() + decoder.damaged_bytes(),
-          decoder.imu_sequence().numbered() ? decoder.imu_sequence().lost() : 0};
+          decoder.imu_sequence().numbered() ? decoder.imu_sequence().lost() : 0, ""};
 }
 
 bool replace_samples(const std::vector<InertialSample<double>>& samples, std::string& message) {

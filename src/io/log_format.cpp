@@ -52,8 +52,8 @@ const LogFormat kLcmFormat = {
     [](const std::string& path) -> std::unique_ptr<LogWriter> { return std::make_unique<LcmSampleWriter>(path); }};
 
 const std::vector<LogFormat>& log_formats() {
-  static const std::vector<LogFormat> formats = {kUlogFormat, kMcapFormat, kMipFormat, kCsvFormat, kLcmFormat};
-  return formats;
+  static const std::vector<LogFormat> kFormats = {kUlogFormat, kMcapFormat, kMipFormat, kCsvFormat, kLcmFormat};
+  return kFormats;
 }
 
 const LogFormat& format_by_name(const std::string& name) {

@@ -27,7 +27,7 @@ namespace {
 
 constexpr std::string_view kMagic("\x89MCAP0\r\n", 8);
 constexpr std::size_t kRecordHeader = 9;
-constexpr std::uint64_t kLargestChunk = std::uint64_t{1} << 30U;
+constexpr std::uint64_t kLargestChunk = std::uint64_t{1} << 28U;
 constexpr std::uint64_t kLargestRecord = std::uint64_t{1} << 28U;  // of what is read
 constexpr std::size_t kMostChannels = 65536;
 constexpr std::size_t kNamedTopics = 20;  // in a message
@@ -100,7 +100,8 @@ class Inflater {
     if (compression != "zstd" && compression != "lz4")
       return "is compressed with '" + printable(compression) + "': zstd and lz4 are read";
     // a size that no compression reaches is a lie, and is not made room for
-    if (size / kLargestRatio > from.size()) return "has another size than it says";
+    if (size / (compression == "zstd" ? kLargestRatioOfZstd : kLargestRatioOfLz4) > from.size())
+      return "has another size than it says";
     if (buffer_.size() < size) buffer_.resize(size);
     const std::size_t made = compression == "zstd" ? zstd(from, size) : lz4(from, size);
     out = {buffer_.data(), made};
@@ -108,7 +109,8 @@ class Inflater {
   }
 
  private:
-  static constexpr std::size_t kLargestRatio = 100000;
+  static constexpr std::size_t kLargestRatioOfZstd = 40000;  // a block of 128 KiB of one byte
+  static constexpr std::size_t kLargestRatioOfLz4 = 256;
 
   std::size_t zstd(std::string_view from, std::size_t size) {
     const std::size_t made = ZSTD_decompressDCtx(zstd_, buffer_.data(), size, from.data(), from.size());
@@ -173,7 +175,11 @@ class McapReader {
     }
     while (stream_.have(1)) stream_.skip(stream_.available());  // the digest is of all
     finish();
-    return {lost_records_ + intake_.damaged_records(), lost_bytes_ + intake_.damaged_bytes(), 0};
+    std::string note = first_lost_;
+    if (other_joints_ > 0)
+      note += (note.empty() ? "" : "; ") + std::to_string(other_joints_) + " joint states without a position of '" +
+              printable(request_.joints[0]) + "' and '" + printable(request_.joints[1]) + "' (axes of the run file)";
+    return {lost_records_ + intake_.damaged_records(), lost_bytes_ + intake_.damaged_bytes(), 0, note};
   }
 
  private:
@@ -205,17 +211,15 @@ class McapReader {
     const std::string& encoder = request_.channels.encoder.name;
     const bool is_imu = known && is_type(channel.type, "sensor_msgs", "Imu");
     const bool is_joints = known && is_type(channel.type, "sensor_msgs", "JointState");
-    if (topic == imu || topic == encoder) {
-      if (topic == imu ? !is_imu : !is_joints)
+    const bool named_imu = !imu.empty() && topic == imu;
+    if (named_imu || (!encoder.empty() && topic == encoder)) {
+      if (named_imu ? !is_imu : !is_joints)
         throw input_error(request_.path, 0, printable(topic),
-                          "is of type " + printable(channel.type.empty() ? encoding : channel.type) + ", not " +
-                              (topic == imu ? "sensor_msgs/msg/Imu" : "sensor_msgs/msg/JointState"));
+                          "is of type " + printable(channel.type) + " in " + printable(encoding) + ", not " +
+                              (named_imu ? "sensor_msgs/msg/Imu" : "sensor_msgs/msg/JointState"));
     }
     if (is_imu && (imu.empty() || topic == imu)) channel.role = Role::kImu;
     if (is_joints && (encoder.empty() || topic == encoder)) channel.role = Role::kEncoder;
-    if (channel.role == Role::kImu) claim(imu_topic_, topic, "imu");
-    if (channel.role == Role::kEncoder && (request_.need_encoder || !encoder.empty()))
-      claim(encoder_topic_, topic, "encoder");
     channels_[id] = channel;
   }
 
@@ -239,12 +243,18 @@ class McapReader {
     const Channel& of = channel->second;
     std::string wrong;
     if (of.role == Role::kImu) {
+      claim(imu_topic_, of.topic, "imu");
       if (const auto imu = decode_ros_imu(fields.rest(), of.encoding, wrong))
         return intake_.imu(imu->utime, imu->sample, record.size(), AtByte(request_.path, byte_));
     } else {
-      if (const auto at = decode_ros_joints(fields.rest(), of.encoding, request_.joints, wrong))
+      if (const auto at = decode_ros_joints(fields.rest(), of.encoding, request_.joints, wrong)) {
+        claim(encoder_topic_, of.topic, "encoder");
         return intake_.encoder(at->utime, at->angle, record.size(), AtByte(request_.path, byte_));
-      if (!request_.need_encoder) return;  // the joints of something else
+      }
+      if (!request_.need_encoder) {  // the joints of something else
+        ++other_joints_;
+        return;
+      }
     }
     damage(record.size(), of.topic, wrong);
   }
@@ -257,7 +267,9 @@ class McapReader {
     const auto crc = fields.number<std::uint32_t>();
     const std::string compression = fields.text();
     const std::string_view packed = fields.bytes(fields.number<std::uint64_t>());
-    std::string wrong = !fields.whole() || size > kLargestChunk ? "is shorter than its members" : "";
+    std::string wrong = !fields.whole()        ? "is shorter than its members"
+                        : size > kLargestChunk ? "is larger than 256 MiB"
+                                               : "";
     std::string_view records;
     if (wrong.empty()) wrong = inflater_.inflate(compression, packed, static_cast<std::size_t>(size), records);
     if (wrong.empty() && crc != 0 && crc32_of(records) != crc) wrong = "does not have its checksum";
@@ -310,6 +322,7 @@ class McapReader {
   std::int64_t byte_ = 0;  // of the record in the file
   long long lost_records_ = 0;
   long long lost_bytes_ = 0;
+  long long other_joints_ = 0;
 };
 
 /// /imu/data and /joint_states, in chunks that are not compressed.

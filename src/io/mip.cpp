@@ -6,13 +6,13 @@
 // big-endian. Sensor data (set 0x80) and its stamps are in one packet.
 
 #include <cmath>
-#include <cstring>
 #include <optional>
 
 #include "big_endian.hpp"
 #include "byte_stream.hpp"
 #include "log_formats.hpp"
 #include "trunnion/core/units.hpp"
+#include "trunnion/positions/channel_clock.hpp"
 
 namespace trunnion::io {
 namespace {
@@ -20,7 +20,9 @@ namespace {
 constexpr std::size_t kHeader = 4;
 constexpr std::size_t kChecksum = 2;
 constexpr std::uint8_t kSensorSet = 0x80;
+constexpr std::int64_t kLongestStep = 1000000;  // us, between two packets of increments
 constexpr double kSecondsPerWeek = 604800.0;
+constexpr double kGpsEpoch = 315964800.0;  // s since 1970, leap seconds not counted
 
 std::uint8_t byte_at(const char* p) { return static_cast<std::uint8_t>(*p); }
 
@@ -50,7 +52,7 @@ struct SensorPacket {
   std::optional<Vec3<double>> delta_velocity;  // m/s
   std::optional<std::int64_t> reference_ns;
   std::optional<std::int64_t> period_ns;
-  std::optional<std::int64_t> gps_us;  // since the GPS epoch
+  std::optional<std::int64_t> gps_us;  // since 1970, ahead of UTC by the leap seconds
 
   /// @return false for a field whose length is not that of its kind
   bool take(std::uint8_t descriptor, const char* p, std::size_t length) {
@@ -69,9 +71,9 @@ struct SensorPacket {
         const double tow = load_double(p);
         const std::uint32_t week_and_flags = load_u32(p + 8);
         const auto flags = static_cast<std::uint16_t>(week_and_flags);
-        const bool valid = descriptor == 0xD3 ? (flags & 3U) == 3U : (flags & 1U) != 0U || (flags & 4U) != 0U;
+        const bool valid = descriptor == 0xD3 ? (flags & 3U) == 3U : (flags & 4U) != 0U;
         if (valid && tow >= 0.0 && tow < kSecondsPerWeek + 1.0)
-          gps_us = std::llround(1e6 * (kSecondsPerWeek * static_cast<double>(week_and_flags >> 16U) + tow));
+          gps_us = std::llround(1e6 * (kGpsEpoch + kSecondsPerWeek * static_cast<double>(week_and_flags >> 16U) + tow));
         return true;
       }
       case 0xD5:
@@ -118,12 +120,15 @@ class MipReader {
       }
     }
     lost_bytes_ += static_cast<long long>(stream_.available());
-    std::string holds = "MIP packets";
-    if (without_time_ > 0) holds = std::to_string(without_time_) + " packets of sensor data without a stamp";
-    if (without_pair_ > 0)
-      holds = std::to_string(without_pair_) + " packets with either rates or specific forces, not both";
-    require(request_, intake_, holds);
-    return {lost_records_ + intake_.damaged_records(), lost_bytes_ + intake_.damaged_bytes(), 0};
+    std::string note;
+    const auto say = [&](long long count, const char* what) {
+      if (count > 0) note += (note.empty() ? "" : ", ") + std::to_string(count) + " packets of sensor data " + what;
+    };
+    say(without_time_, "without a stamp");
+    say(without_pair_, "with either rates or specific forces, not both");
+    say(without_period_, "with increments after a gap");
+    require(request_, intake_, note.empty() ? "MIP packets" : note);
+    return {lost_records_ + intake_.damaged_records(), lost_bytes_ + intake_.damaged_bytes(), 0, note};
   }
 
  private:
@@ -145,12 +150,16 @@ class MipReader {
       at += field;
     }
     const std::optional<std::int64_t> utime = packet.utime();
-    const double period =
-        1e-9 * static_cast<double>(packet.period_ns.value_or(utime && last_ ? 1000 * (*utime - *last_) : 0));
-    if (utime) last_ = utime;
-    // angles and velocities are the means themselves; rates are what a filter leaves of them
-    if (!packet.rate && packet.delta_angle && period > 0.0) packet.rate = *packet.delta_angle / period;
-    if (!packet.force && packet.delta_velocity && period > 0.0) packet.force = *packet.delta_velocity / period;
+    const double period = 1e-9 * static_cast<double>(packet.period_ns.value_or(1000 * steady_step(utime)));
+    // increments are of the unit's own period: where it does not state it, a step like the one before
+    if (!packet.rate && !packet.force && packet.delta_angle && packet.delta_velocity) {
+      if (!(period > 0.0)) {
+        if (utime) ++without_period_;
+        return;
+      }
+      packet.rate = *packet.delta_angle / period;
+      packet.force = *packet.delta_velocity / period;
+    }
     if (packet.rate && packet.force && utime) {
       intake_.imu(*utime, {*packet.rate, *packet.force}, length, fault);
     } else if (packet.rate && packet.force) {
@@ -160,15 +169,28 @@ class MipReader {
     }
   }
 
+  /// The step to this stamp [us] where it is like the one before; zero where it is not, or none is known.
+  std::int64_t steady_step(const std::optional<std::int64_t>& utime) {
+    if (!utime) return 0;
+    const std::int64_t step = last_ ? ChannelClock::difference(*utime, *last_) : 0;
+    const bool steady =
+        step > 0 && step_ > 0 && std::abs(static_cast<double>(step - step_)) < 0.2 * static_cast<double>(step_);
+    last_ = utime;
+    step_ = step;
+    return steady && step < kLongestStep ? step : 0;
+  }
+
   const LogRequest& request_;
   ByteStream stream_;
   SampleIntake intake_;
+  std::int64_t step_ = 0;
   std::optional<std::int64_t> last_;
   bool synchronised_ = true;
   long long lost_records_ = 0;
   long long lost_bytes_ = 0;
   long long without_time_ = 0;
   long long without_pair_ = 0;
+  long long without_period_ = 0;
 };
 
 bool is_mip(std::string_view head) {

@@ -279,6 +279,7 @@ LogLosses read_recording(const RunFile& run, const RecordingFiles& files, Sample
     losses.records += lost.records;
     losses.bytes += lost.bytes;
     losses.samples += lost.samples;
+    if (!lost.note.empty()) losses.note += (losses.note.empty() ? "" : "; ") + lost.note;
     inputs.emplace_back(path, digest.finish());
   };
   if (!files.log.empty()) {

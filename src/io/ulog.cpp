@@ -5,7 +5,8 @@
 // are little-endian. F defines a format, A gives a number to a topic that has it, D is data of such a number.
 
 #include <algorithm>
-#include <cmath>
+#include <array>
+#include <cstdio>
 #include <limits>
 #include <map>
 #include <optional>
@@ -162,7 +163,12 @@ class UlogReader {
       holds += (holds.empty() ? "topics " : ", ") + printable(name);
     }
     require(request_, intake_, holds);
-    return {lost_records_ + intake_.damaged_records(), lost_bytes_ + intake_.damaged_bytes(), 0};
+    std::string note;
+    if (!own_.empty()) note = "the vehicle's own " + own_ + " are in these readings";
+    if (dropouts_ > 0)
+      note += (note.empty() ? "" : "; ") + std::to_string(dropouts_) + " dropouts of the logger, " +
+              std::to_string(dropped_ms_) + " ms in all";
+    return {lost_records_ + intake_.damaged_records(), lost_bytes_ + intake_.damaged_bytes(), 0, note};
   }
 
  private:
@@ -193,6 +199,11 @@ class UlogReader {
         data(content.substr(2));
     } else if (kind == 'F') {
       formats_.add(content);
+    } else if (kind == 'P') {
+      parameter(content);
+    } else if (kind == 'O' && content.size() >= 2) {
+      ++dropouts_;
+      dropped_ms_ += load_little<std::uint16_t>(content.data());
     } else if (kind == 'B') {
       // appended data is data as any; a logger of times to come states what one must understand to read on
       for (std::size_t i = 8; i < std::min<std::size_t>(16, content.size()); ++i) {
@@ -205,12 +216,41 @@ class UlogReader {
     }
   }
 
+  /// What the vehicle does to readings before it logs them: "float CAL_ACC0_XOFF", and its value.
+  void parameter(std::string_view content) {
+    const std::size_t length = content.empty() ? 0 : static_cast<unsigned char>(content[0]);
+    if (content.size() != 1 + length + 4 || own_parameters_ == kNamedTopics) return;
+    const std::string_view key = content.substr(1, length);
+    const char* const value = content.data() + 1 + length;
+    const std::size_t blank = key.find(' ');
+    const std::string name(key.substr(std::min(blank, key.size() - 1) + 1));
+    const auto ends = [&](std::string_view end) {
+      return name.size() > end.size() && name.compare(name.size() - end.size(), end.size(), end) == 0;
+    };
+    const bool is_float = key.substr(0, blank) == "float";
+    const double number = is_float ? static_cast<double>(load_little<float>(value))
+                                   : static_cast<double>(load_little<std::int32_t>(value));
+    const bool calibrates = name.rfind("CAL_ACC", 0) == 0 || name.rfind("CAL_GYRO", 0) == 0;
+    const bool moves = (calibrates && is_float && ends("OFF") && number != 0.0) ||
+                       (calibrates && is_float && ends("SCALE") && number != 1.0) ||
+                       (calibrates && ends("_ROT") && number > 0.0) || (name == "SENS_BOARD_ROT" && number != 0.0);
+    if (!moves) return;
+    std::array<char, 32> text{};
+    std::snprintf(text.data(), text.size(), "%.4g", number);
+    own_ += (own_.empty() ? "" : ", ") + printable(name) + " = " + text.data();
+    ++own_parameters_;
+  }
+
   void subscribe(const std::string& instance, std::uint16_t number, const std::string& topic) {
     topics_.emplace(topic + (instance == "0" ? "" : "#" + instance), number);
     const bool wanted = topic_.empty() ? (topic == kCombined || topic == kIntegrals) : topic == topic_;
-    if (!wanted || instance != instance_ || number_ != kNone) return;
+    if (!wanted || instance != instance_) return;
+    // sensor_combined where there is one: vehicle_imu is often logged at a part of its rate
+    const bool better = topic_.empty() && topic == kCombined && chosen_ == kIntegrals && intake_.samples() == 0;
+    if (number_ != kNone && !better) return;
     layout_ = layout_of(topic);
     number_ = number;
+    chosen_ = topic;
   }
 
   Layout layout_of(const std::string& topic) const {
@@ -276,8 +316,10 @@ class UlogReader {
     } else if (layout_.relative && load_little<std::int32_t>(p + *layout_.relative) == kNotRelative) {
       return;  // no sample of the accelerometers
     }
-    intake_.imu(static_cast<std::int64_t>(load_little<std::uint64_t>(p + layout_.stamp)), sample, content.size(),
-                fault);
+    const auto stamp = load_little<std::uint64_t>(p + layout_.stamp);
+    if (stamp > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max()))
+      return intake_.damage(content.size(), fault("timestamp", "is beyond any clock"));
+    intake_.imu(static_cast<std::int64_t>(stamp), sample, content.size(), fault);
   }
 
   const LogRequest& request_;
@@ -288,6 +330,11 @@ class UlogReader {
   Formats formats_;
   std::map<std::string, std::uint16_t> topics_;
   std::uint16_t number_ = kNone;
+  std::string chosen_;
+  long long dropouts_ = 0;
+  long long dropped_ms_ = 0;
+  std::string own_;
+  std::size_t own_parameters_ = 0;
   Layout layout_;
   long long lost_records_ = 0;
   long long lost_bytes_ = 0;

@@ -71,6 +71,7 @@ def every_call_fails(name, arguments, output, reference):
     for seed in range(3):
         done = run(arguments, f"dribble {seed}")
         hold(done.returncode == 0 and content(output) == reference, f"{name}, dribbling: exit {done.returncode} {done.stderr[-200:]}")
+    hold(struck > 10, f"{name}: only {struck} calls were struck")
     print(f"[ FIGURE   ] {name}: {struck} calls failed, one at a time; no output half-written")
 
 
@@ -141,6 +142,7 @@ def killed_live(times):
         session.send_signal(signal.SIGINT)
         session.wait()
         hold(os.path.exists(log) and content(log).startswith(before), f"mount {mount}: the recording is not what was recorded")
+        hold(records(before)[1] > 0, f"mount {mount}: nothing was recorded")
         print(f"mount {mount}: {records(before)[1]} records outlived {deaths} deaths", flush=True)
     print(f"[ FIGURE   ] imu_live: killed {deaths} times while it recorded; no record that was in its journal is lost")
 
@@ -156,7 +158,8 @@ with tempfile.TemporaryDirectory() as folder:
         jobs = [
             ("solve", command("imu_calibrate", "solve", "table/run.yaml", "-o", "solved.yaml"), "solved.yaml", 0.2),
             ("apply", command("imu_calibrate", "apply", "calibration.yaml", "table/position_1.lcm", "-o", "applied.lcm"), "applied.lcm", 0.4),
-            ("convert", command("imu_calibrate", "convert", "table/position_1.lcm", "-o", "converted.mcap"), "converted.mcap", 0.4),
+            ("convert", command("imu_calibrate", "convert", "table/position_1.lcm", "-o", "converted.mcap"), "converted.mcap", 0.3),
+            ("export", command("imu_calibrate", "export", "calibration.yaml", "--format", "kalibr", "-o", "exported.yaml"), "exported.yaml", 0.1),
         ]
         for name, arguments, output, share in jobs:
             subprocess.run(arguments, capture_output=True, check=True)

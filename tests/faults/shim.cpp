@@ -69,7 +69,9 @@ bool is_regular(int descriptor) {
 /// Bytes of the next call when everything dribbles; -1: interrupted.
 long dribbled(std::size_t count) {
   static std::atomic<unsigned long> state{0};
-  const unsigned long n = ++state * 6364136223846793005UL + static_cast<unsigned long>(fault().number);
+  const unsigned long seed = 0x9e3779b97f4a7c15UL * static_cast<unsigned long>(fault().number + 1);
+  unsigned long n = (++state ^ seed) * 6364136223846793005UL;
+  n = (n ^ (n >> 29U)) * 0xbf58476d1ce4e5b9UL;
   if (((n >> 40U) & 3U) == 0) {
     errno = EINTR;
     return -1;

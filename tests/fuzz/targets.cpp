@@ -81,12 +81,14 @@ void refused_or(const Read& read) {
 
 void log(const char* format, const std::uint8_t* data, std::size_t size) {
   const File file(data, size);
-  for (const bool both : {false, true}) {
+  for (const int way : {0, 1, 2, 3}) {
     refused_or([&] {
       Finite sink;
       io::LogRequest request;
       request.path = file.path();
-      request.need_encoder = both;
+      request.need_imu = way != 2;
+      request.need_encoder = way == 1 || way == 2;
+      if (way == 3) request.columns = {{"t", {"", 0, "samples"}}, {"gyro_x", {"", 2, "counts"}}};
       request.channels.sheet.rate_hz = 100.0;
       io::format_by_name(format).read(request, sink);
     });

@@ -450,6 +450,10 @@ TEST(Export, DeviceIdsAndStartUp) {
   EXPECT_THAT(export_format("px4").make(request).text, HasSubstr("1\t1\tCAL_ACC0_ID\t1310988\t6\n"));
   EXPECT_THAT(export_format("px4").make(request).text, HasSubstr("1\t1\tCAL_GYRO0_ID\t1310730\t6\n"));
   EXPECT_THAT(export_format("ardupilot").make(request).text, HasSubstr("INS_GYR_CAL,0\n"));
+  request.instance = 1;
+  EXPECT_THAT(export_format("px4").make(request).text, HasSubstr("\tCAL_GYRO1_ZOFF\t"));
+  EXPECT_THAT(export_format("ardupilot").make(request).text,
+              HasSubstr("INS_ACC2SCAL_Y,1\nINS_ACC2SCAL_Z,1\nINS_GYR2OFFS_X,0\n"));
 }
 
 }  // namespace

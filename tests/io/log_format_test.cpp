@@ -140,24 +140,38 @@ TEST_F(LogFormats, MipInItsUnitsAndStamps) {
 
 TEST_F(LogFormats, MipByGpsTime) {
   read(mip_packet({mip_accel(kSample.f), mip_gyro(kSample.w), mip_gps_time(0xD3, 137649.863104, 1969, 3)}));
-  EXPECT_EQ(collect_->stamps[0], 1969LL * 604800 * 1000000 + 137649863104);
+  EXPECT_EQ(collect_->stamps[0], (315964800LL + 1969LL * 604800) * 1000000 + 137649863104);
   read(mip_packet({mip_accel(kSample.f), mip_gyro(kSample.w), mip_gps_time(0x12, 1.5, 1969, 5)}));
-  EXPECT_EQ(collect_->stamps[0], 1969LL * 604800 * 1000000 + 1500000);
+  EXPECT_EQ(collect_->stamps[0], (315964800LL + 1969LL * 604800) * 1000000 + 1500000);
   EXPECT_REFUSES(ExitCode::kInput, "without a stamp",
                  read(mip_packet({mip_accel(kSample.f), mip_gyro(kSample.w), mip_gps_time(0xD3, 1.0, 1969, 1)})));
   EXPECT_REFUSES(ExitCode::kInput, "without a stamp", read(mip_packet({mip_accel(kSample.f), mip_gyro(kSample.w)})));
 }
 
 TEST_F(LogFormats, MipOfIncrements) {
-  read(
-      mip_packet({mip_deltas(0.01 * kSample.w, 0.01 * kSample.f), mip_reference_time(0)}) +
-      mip_packet({mip_deltas(0.01 * kSample.w, 0.01 * kSample.f), mip_reference_time(10000000)}) +
-      mip_packet({mip_deltas(0.02 * kSample.w, 0.02 * kSample.f), mip_reference_time(20000000), mip_period(20000000)}));
-  ASSERT_EQ(collect_->samples.size(), 2U) << "the first has no period";
+  const auto at = [](std::int64_t milliseconds) {
+    return mip_packet({mip_deltas(0.01 * kSample.w, 0.01 * kSample.f), mip_reference_time(1000000 * milliseconds)});
+  };
+  // of its own period only where the step is like the one before: not across a gap
+  const LogLosses lost = read(at(0) + at(10) + at(20) + at(120) + at(130) + at(140) +
+                              mip_packet({mip_deltas(0.02 * kSample.w, 0.02 * kSample.f), mip_reference_time(240000000),
+                                          mip_period(20000000)}));
+  EXPECT_THAT(collect_->stamps, ElementsAre(20000, 140000, 240000));
+  EXPECT_THAT(lost.note, testing::HasSubstr("4 packets of sensor data with increments after a gap"));
   for (const auto& s : collect_->samples) {
     EXPECT_LT((s.w - kSample.w).norm(), 1e-7);
     EXPECT_LT((s.f - kStandardGravity * kSample.f).norm(), 1e-5);
   }
+}
+
+TEST_F(LogFormats, MipSaysWhatItPassesOver) {
+  const LogLosses lost = read(mip_packet({mip_accel(kSample.f), mip_gyro(kSample.w), mip_reference_time(1)}) +
+                              mip_packet({mip_accel(kSample.f), mip_gyro(kSample.w)}) +
+                              mip_packet({mip_accel(kSample.f), mip_reference_time(2)}));
+  EXPECT_EQ(collect_->samples.size(), 1U);
+  EXPECT_EQ(lost.note,
+            "1 packets of sensor data without a stamp, 1 packets of sensor data with either rates or specific forces, "
+            "not both");
 }
 
 TEST_F(LogFormats, MipWithDamageGoesOn) {
@@ -220,6 +234,36 @@ TEST_F(LogFormats, UlogOfVehicleImu) {
   EXPECT_REFUSES(ExitCode::kInput, "it has topics vehicle_imu, vehicle_imu#1", read(log + ulog_data(1, data), second));
   second.channels.imu.name = "vehicle_imu#x";
   EXPECT_REFUSES(ExitCode::kInput, "is no topic", read(log, second));
+}
+
+TEST_F(LogFormats, UlogPrefersSensorCombined) {
+  const std::string imu =
+      "vehicle_imu:uint64_t timestamp_sample;float[3] delta_angle;float[3] delta_velocity;uint16_t delta_angle_dt;"
+      "uint16_t delta_velocity_dt;";
+  const std::string head = ulog_head() + ulog_message('F', imu) + ulog_message('F', kCombinedFormat) +
+                           ulog_subscribe(0, 1, "vehicle_imu") + ulog_subscribe(0, 7, "sensor_combined");
+  const LogLosses lost = read(head + ulog_data(1, std::string(36, '\1')) + ulog_combined(7, 1000, kSample, 0) +
+                              ulog_message('O', std::string("\x32\0", 2)) + ulog_combined(7, 2000, kSample, 0));
+  EXPECT_THAT(collect_->stamps, ElementsAre(1000, 2000));
+  EXPECT_EQ(lost.note, "1 dropouts of the logger, 50 ms in all");
+  EXPECT_REFUSES(ExitCode::kInput, "beyond any clock",
+                 read(head + ulog_combined(7, std::uint64_t{1} << 63U, kSample, 0)));
+}
+
+TEST_F(LogFormats, UlogNamesTheVehiclesOwnCalibration) {
+  const auto parameter = [](const std::string& key, auto value) {
+    std::string content(1, static_cast<char>(key.size()));
+    content += key;
+    append_little(content, value);
+    return ulog_message('P', content);
+  };
+  const std::string log = ulog_head() + parameter("float CAL_ACC0_XOFF", -0.25F) +
+                          parameter("float CAL_ACC0_YOFF", 0.0F) + parameter("float CAL_ACC0_XSCALE", 1.0F) +
+                          parameter("float CAL_GYRO0_ZOFF", 0.5F) +
+                          parameter("int32_t SENS_BOARD_ROT", std::int32_t{4}) + ulog_message('F', kCombinedFormat) +
+                          ulog_subscribe(0, 7, "sensor_combined") + ulog_combined(7, 1000, kSample, 0);
+  EXPECT_EQ(read(log).note,
+            "the vehicle's own CAL_ACC0_XOFF = -0.25, CAL_GYRO0_ZOFF = 0.5, SENS_BOARD_ROT = 4 are in these readings");
 }
 
 TEST_F(LogFormats, UlogNestedAndPaddedFormats) {
@@ -298,18 +342,22 @@ TEST_F(LogFormats, McapInCompressedChunks) {
     EXPECT_LT(packed.size(), records.size() / 4);
     EXPECT_EQ(read(mcap_head() + mcap_chunk(how, packed, records.size(), crc) + mcap_end()).bytes, 0);
     EXPECT_EQ(collect_->samples.size(), 500U);
-    for (const auto& [wrong, what] : {std::pair{mcap_chunk(how, packed, records.size(), crc ^ 1U), "checksum"},
-                                      std::pair{mcap_chunk(how, packed, records.size() + 1, crc), "decompressed"},
-                                      std::pair{mcap_chunk(how, packed, records.size() - 1, crc), "decompressed"},
-                                      std::pair{mcap_chunk(how, packed, std::uint64_t{1} << 29U, 0), "another size"},
-                                      std::pair{mcap_chunk(how, "nonsense", records.size(), 0), "decompressed"}}) {
+    for (const auto& [wrong, what] :
+         {std::pair{mcap_chunk(how, packed, records.size(), crc ^ 1U), "checksum"},
+          std::pair{mcap_chunk(how, packed, records.size() + 1, crc), "decompressed"},
+          std::pair{mcap_chunk(how, packed, records.size() - 1, crc), "decompressed"},
+          std::pair{mcap_chunk(how, packed, std::uint64_t{1} << 27U, 0), "another size"},
+          std::pair{mcap_chunk(how, packed, std::uint64_t{1} << 29U, 0), "larger than 256 MiB"},
+          std::pair{mcap_chunk(how, std::string(2000, 'n'), records.size(), 0), "decompressed"}}) {
       const auto& text = wrong;
       EXPECT_REFUSES(ExitCode::kInput, what, read(mcap_head() + text + mcap_end()));
     }
     // what is damaged is passed over where there is enough else
     const std::string two =
         mcap_chunk(how, packed, records.size(), crc) + mcap_chunk(how, packed, records.size(), crc ^ 1U);
-    EXPECT_EQ(read(mcap_head() + two + mcap_end()).records, 1);
+    const LogLosses lost = read(mcap_head() + two + mcap_end());
+    EXPECT_EQ(lost.records, 1);
+    EXPECT_THAT(lost.note, testing::HasSubstr("chunk: does not have its checksum"));
     EXPECT_EQ(collect_->samples.size(), 500U);
   }
   EXPECT_REFUSES(ExitCode::kInput, "zstd and lz4 are read",
@@ -338,7 +386,18 @@ TEST_F(LogFormats, McapWithSeveralTopics) {
   EXPECT_THAT(collect_->angles, ElementsAre(std::array<double, 2>{0.25, 0.5}));
   both.joints = {"pan", "tilt"};
   EXPECT_REFUSES(ExitCode::kInput, "no position of a joint 'pan'", read(log + mcap_end(), both));
-  EXPECT_EQ(read(log + mcap_end()).records, 0) << "joints that nobody asked for";
+  EXPECT_EQ(read(log + mcap_end()).note, "") << "joints that are there and were not asked for";
+  LogRequest pan;
+  pan.joints = {"pan", "tilt"};
+  EXPECT_EQ(read(log + mcap_end(), pan).note,
+            "1 joint states without a position of 'pan' and 'tilt' (axes of the run file)");
+  const std::string again =
+      mcap_channel(9, 2, "/other", "cdr") + mcap_message(9, cdr_joints(3, {"pitch", "azimuth"}, {0.1, 0.2}));
+  EXPECT_REFUSES(ExitCode::kInput, "more than one: /joint_states and /other", read(log + again + mcap_end()));
+  read(log + mcap_channel(8, 1, "/imu/idle", "cdr") + mcap_end());
+  EXPECT_EQ(collect_->samples.size(), 1U) << "a topic without a message is no other";
+  read(log + mcap_channel(7, 3, "", "cdr") + mcap_end());
+  EXPECT_EQ(collect_->samples.size(), 1U) << "nor is a topic without a name";
 
   const std::string two = log + mcap_channel(4, 1, "/imu/b", "cdr") + mcap_message(4, cdr_imu(3, 0, kSample));
   EXPECT_REFUSES(ExitCode::kInput, "more than one: /imu/a and /imu/b", read(two + mcap_end()));
@@ -347,7 +406,7 @@ TEST_F(LogFormats, McapWithSeveralTopics) {
   read(two + mcap_end(), b);
   EXPECT_THAT(collect_->stamps, ElementsAre(3000000));
   b.channels.imu.name = "/camera";
-  EXPECT_REFUSES(ExitCode::kInput, "is of type sensor_msgs/msg/Image, not sensor_msgs/msg/Imu", read(log, b));
+  EXPECT_REFUSES(ExitCode::kInput, "is of type sensor_msgs/msg/Image in cdr, not sensor_msgs/msg/Imu", read(log, b));
   b.channels.imu.name = "/none";
   EXPECT_REFUSES(ExitCode::kInput, "it has topics /camera (sensor_msgs/msg/Image), /imu/a", read(log + mcap_end(), b));
 }
@@ -416,7 +475,7 @@ TEST_F(LogFormats, TablesOfOtherPrograms) {
       "Week,GPS "
       "TOW,X Gyro [x8005],Y Gyro [x8005],Z Gyro [x8005],X Accel [x8004],Y Accel [x8004],Z Accel [x8004],Lat\n"
       "5,1,0.5,,,,,,,48.1\n5,1,1.5,0.25,-0.5,0.125,1.5,-2.25,9.75,\n",
-      604801500000, 1.0, kStandardGravity);
+      (315964800LL + 604801) * 1000000 + 500000, 1.0, kStandardGravity);
 }
 
 TEST_F(LogFormats, TablesOfOtherProgramsGoneWrong) {
@@ -445,6 +504,24 @@ TEST_F(LogFormats, CountersThatWrap) {
       "sep=,\nDeviceTag:,1\n\nPacketCounter,SampleTimeFine,Gyr_X,Gyr_Y,Gyr_Z,Acc_X,Acc_Y,Acc_Z\n"
       "1,4294960000,1,2,3,4,5,6\n2,1000,1,2,3,4,5,6\n");
   EXPECT_THAT(collect_->stamps, ElementsAre(4294960000, 4294968296));
+}
+
+TEST_F(LogFormats, TablesInUtf16) {
+  EXPECT_REFUSES(ExitCode::kInput, "UTF-16: save it as UTF-8", read(std::string("\xff\xfet\0_\0s\0\n\0", 10)));
+}
+
+TEST_F(LogFormats, TablesOfAThermometerThatBeginsLate) {
+  const std::unique_ptr<LogWriter> writer = format_by_name("csv").write(folder_ / "late.csv");
+  writer->imu(1000000, kSample);
+  writer->temperature(21.0);
+  writer->imu(2000000, kSample);
+  writer->commit();
+  Collect collect;
+  LogRequest request;
+  request.path = folder_ / "late.csv";
+  read_log(request, collect);
+  EXPECT_THAT(collect.temperatures, ElementsAre(21.0));
+  EXPECT_EQ(collect.samples.size(), 2U);
 }
 
 TEST_F(LogFormats, UnitAndEncodersInOneTable) {
@@ -544,7 +621,7 @@ TEST_F(RealRecordings, Px4Ulog) {
 TEST_F(RealRecordings, MicroStrainCsv) {
   const Seen seen = look("formats/microstrain_csv/microstrain.csv");
   EXPECT_EQ(seen.samples, 144);
-  EXPECT_EQ(seen.first, 1969LL * 604800 * 1000000 + 137649863104);
+  EXPECT_EQ(seen.first, (315964800LL + 1969LL * 604800) * 1000000 + 137649863104);
   EXPECT_NEAR(1e-6 * static_cast<double>(seen.longest), 0.01, 1e-5);
   EXPECT_NEAR(seen.force.norm(), 9.84, 0.05);
 }

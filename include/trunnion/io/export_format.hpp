@@ -22,6 +22,7 @@ struct ExportRequest {
   SensorSheet sheet;               ///< noise and rate, where the target has a place for them
   long long gyro_id = 0;           ///< of the devices, where the target tells them apart by it; 0: not stated
   long long accel_id = 0;
+  int instance = 0;                      ///< which of a vehicle's units it is
   std::string function = "correct_imu";  ///< name of a function, where the file is one
 };
 

@@ -35,6 +35,7 @@ struct LogLosses {
   long long records = 0;  ///< damaged in the file
   long long bytes = 0;
   long long samples = 0;  ///< of the unit, that its sequence numbers miss
+  std::string note;       ///< in words, what else there is to know: of what was not read, of what is in the readings
 };
 
 using Progress = std::function<void(double fraction)>;
