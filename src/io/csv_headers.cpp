@@ -7,7 +7,7 @@ namespace trunnion::io {
 
 const std::vector<HeaderSet>& header_sets() {
   constexpr double kOf32Bits = 4294967296.0;
-  static const std::vector<HeaderSet> sets = {
+  static const std::vector<HeaderSet> kSets = {
       {"MicroStrain MIP Monitor",
        nullptr,
        "GPS TOW",
@@ -102,7 +102,7 @@ const std::vector<HeaderSet>& header_sets() {
        "rad/s",
        "m/s^2"},
   };
-  return sets;
+  return kSets;
 }
 
 }  // namespace trunnion::io

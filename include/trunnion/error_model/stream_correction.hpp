@@ -22,7 +22,7 @@ class StreamCorrection {
 
   /// The true input for the reading at @p t [s]: SI, or raw counts where they were told.
   [[nodiscard]] InertialSample<T> correct(double t, const InertialSample<T>& reading) {
-    const InertialSample<T> first = correction_.correct(reading);
+    InertialSample<T> first = correction_.correct(reading);
     if (size_effect_.is_zero()) return first;
     const Vec3<T> without = reading.f - accel_scale_ * size_effect_.next(t, first.w);
     return correction_.correct({reading.w, without});
