@@ -52,6 +52,7 @@ def every_call_fails(name, arguments, output, reference):
         done = run(arguments, f"{kind} 0", TRUNNION_CALLS="calls")
         os.remove(output)
         calls = int(content("calls"))
+        hold(calls > 0, f"{name}: no {kind} to fail")
         numbers = range(1, calls + 1) if calls <= 60 else sorted(random.sample(range(1, calls + 1), 60))
         for number in numbers:
             done = run(arguments, f"{kind} {number}")
@@ -71,7 +72,6 @@ def every_call_fails(name, arguments, output, reference):
     for seed in range(3):
         done = run(arguments, f"dribble {seed}")
         hold(done.returncode == 0 and content(output) == reference, f"{name}, dribbling: exit {done.returncode} {done.stderr[-200:]}")
-    hold(struck > 10, f"{name}: only {struck} calls were struck")
     print(f"[ FIGURE   ] {name}: {struck} calls failed, one at a time; no output half-written")
 
 
