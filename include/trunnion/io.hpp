@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the trunnion authors
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Rung 3: run files, sheets, calibrations, logs of any format, exports. Rigs from URDF are in io/urdf.hpp, a component of its
-/// own.
+/// Rung 3: run files, sheets, calibrations, logs of any format, exports. Rigs from URDF are in io/urdf.hpp, a component
+/// of its own.
 
 #pragma once
 
