@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the trunnion authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include <algorithm>
 #include <filesystem>
 #include <memory>
 

@@ -21,18 +21,20 @@ class LcmSampleWriter final : public LogWriter {
   explicit LcmSampleWriter(const std::string& path) : path_(path), log_(path) {}
   void imu(std::int64_t utime, const InertialSample<double>& sample) override {
     encode_imu(utime, samples_++, sample, message_, celsius_);
-    log_.write(utime, LogChannels().imu_channel(), message_);
+    log_.write(utime, imu_channel_, message_);
   }
   void temperature(double celsius) override { celsius_ = celsius; }
   void encoder(std::int64_t utime, double azimuth, double pitch) override {
     encode_encoder(utime, readings_++, azimuth, pitch, message_);
-    log_.write(utime, LogChannels().encoder_channel(), message_);
+    log_.write(utime, encoder_channel_, message_);
   }
   void commit() override { log_.commit(); }
   [[nodiscard]] std::vector<std::string> files() const override { return {path_}; }
 
  private:
   std::string path_;
+  std::string imu_channel_ = LogChannels().imu_channel();
+  std::string encoder_channel_ = LogChannels().encoder_channel();
   LcmLogWriter log_;
   std::string message_;
   std::int64_t samples_ = 0;

@@ -7,6 +7,7 @@
 
 #include <string>
 
+#include "byte_stream.hpp"
 #include "trunnion/io/fault.hpp"
 #include "trunnion/io/log_format.hpp"
 #include "trunnion/io/sample_intake.hpp"
@@ -19,8 +20,21 @@ extern const LogFormat kMcapFormat;
 extern const LogFormat kMipFormat;
 extern const LogFormat kUlogFormat;
 
-/// Bytes of the file between two calls of a progress.
-inline constexpr std::int64_t kBytesPerProgress = std::int64_t{1} << 22U;
+/// Tells a request how far its reader is, now and then.
+class ByteProgress {
+ public:
+  explicit ByteProgress(const Progress& progress) : progress_(progress) {}
+  void show(const ByteStream& stream) {
+    if (!progress_ || stream.offset() - shown_ <= kBytes) return;
+    shown_ = stream.offset();
+    progress_(static_cast<double>(shown_) / static_cast<double>(stream.size()));
+  }
+
+ private:
+  static constexpr std::int64_t kBytes = std::int64_t{1} << 22U;  // between two calls
+  const Progress& progress_;
+  std::int64_t shown_ = 0;
+};
 
 /// What SampleIntake takes for a place in a file.
 class AtByte {

@@ -10,6 +10,7 @@
 #include <zstd.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <map>
 #include <set>
@@ -150,7 +151,7 @@ class McapReader {
   LogLosses read() {
     stream_.skip(stream_.have(kMagic.size()) ? kMagic.size() : stream_.available());
     bool ended = false;
-    std::int64_t shown = 0;
+    ByteProgress progress(request_.progress);
     while (!ended && stream_.have(kRecordHeader)) {
       const auto kind = static_cast<std::uint8_t>(stream_.data()[0]);
       const auto length = load_little<std::uint64_t>(stream_.data() + 1);
@@ -164,10 +165,7 @@ class McapReader {
       }
       stream_.pass(kRecordHeader + length);
       ended = kind == kDataEnd || kind == kFooter;
-      if (request_.progress && stream_.offset() - shown > kBytesPerProgress) {
-        shown = stream_.offset();
-        request_.progress(static_cast<double>(shown) / static_cast<double>(stream_.size()));
-      }
+      progress.show(stream_);
     }
     if (!ended) {
       ++lost_records_;
@@ -359,7 +357,7 @@ class McapWriter final : public LogWriter {
   [[nodiscard]] bool holds_temperature() const override { return false; }
   void encoder(std::int64_t utime, double azimuth, double pitch) override {
     check(utime);
-    encode_ros_joints(utime, LogRequest().joints, {azimuth, pitch}, message_);
+    encode_ros_joints(utime, joints_, {azimuth, pitch}, message_);
     add(kJointsId, readings_++, utime);
   }
   void commit() override {
@@ -424,6 +422,7 @@ class McapWriter final : public LogWriter {
   }
 
   std::string path_;
+  std::array<std::string, 2> joints_ = LogRequest().joints;
   WholeFile file_;
   std::string message_;
   std::string record_;

@@ -104,7 +104,7 @@ class MipReader {
       : request_(request), stream_(request.path, request.digest), intake_(sink) {}
 
   LogLosses read() {
-    std::int64_t shown = 0;
+    ByteProgress progress(request_.progress);
     while (stream_.have(kHeader + kChecksum)) {
       const std::size_t length = kHeader + byte_at(stream_.data() + 3) + kChecksum;
       if (!begins_packet(stream_.data()) || !stream_.have(length) || !sums_up(stream_.data(), length)) {
@@ -114,10 +114,7 @@ class MipReader {
       synchronised_ = true;
       if (byte_at(stream_.data() + 2) == kSensorSet) sensor(length);
       stream_.skip(length);
-      if (request_.progress && stream_.offset() - shown > kBytesPerProgress) {
-        shown = stream_.offset();
-        request_.progress(static_cast<double>(shown) / static_cast<double>(stream_.size()));
-      }
+      progress.show(stream_);
     }
     lost_bytes_ += static_cast<long long>(stream_.available());
     std::string note;

@@ -137,7 +137,7 @@ class UlogReader {
   LogLosses read() {
     stream_.have(kFileHeader);
     stream_.skip(std::min(kFileHeader, stream_.available()));
-    std::int64_t shown = 0;
+    ByteProgress progress(request_.progress);
     while (stream_.have(kMessageHeader)) {
       const std::size_t length = load_little<std::uint16_t>(stream_.data());
       const char kind = stream_.data()[2];
@@ -147,10 +147,7 @@ class UlogReader {
       }
       message(kind, {stream_.data() + kMessageHeader, length});
       stream_.skip(kMessageHeader + length);
-      if (request_.progress && stream_.offset() - shown > kBytesPerProgress) {
-        shown = stream_.offset();
-        request_.progress(static_cast<double>(shown) / static_cast<double>(stream_.size()));
-      }
+      progress.show(stream_);
     }
     if (stream_.available() > 0) {
       ++lost_records_;
