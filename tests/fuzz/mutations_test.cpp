@@ -70,9 +70,10 @@ TEST(Mutations, OfLogs) {
 TEST(Mutations, OfTables) {
   const TemporaryFolder folder;
   const std::string path = folder / "fuzz.csv";
-  std::string text = io::imu_csv_header();
-  for (int i = 0; i < 400; ++i)
-    io::append_imu_csv(0.01 * i, {Vec3<double>(0.1, 0.2, 0.3), Vec3<double>(1, 2, 9.8)}, text);
+  const std::unique_ptr<io::LogWriter> writer = io::format_by_name("csv").write(path);
+  for (int i = 0; i < 400; ++i) writer->imu(10000 * i, {Vec3<double>(0.1, 0.2, 0.3), Vec3<double>(1, 2, 9.8)});
+  writer->commit();
+  const std::string text = io::read_whole(path);
   run("tables", text, path, [&] {
     calibration::Compressor compressor({});
     io::format_by_name("csv").read(io::log_request(path, {}, false), compressor);

@@ -135,10 +135,15 @@ TEST_F(Csv, ReadsEncoders) {
 }
 
 TEST_F(Csv, ReadsBackWhatItWrites) {
-  std::string text = imu_csv_header();
   const InertialSample<double> sample{Vec3<double>(0.1, 1.0 / 3.0, -1e-17), Vec3<double>(9.81, 2e5, 0.0)};
-  append_imu_csv(12.5, sample, text);
-  read(text);
+  LogRequest request;
+  request.path = folder_ / "written.csv";
+  const std::unique_ptr<LogWriter> writer = format_by_name("csv").write(request.path);
+  writer->imu(12500000, sample);
+  writer->imu(12510000, sample);
+  writer->commit();
+  read_log(request, collect_);
+  ASSERT_EQ(collect_.samples.size(), 2U);
   EXPECT_EQ(collect_.samples[0].w, sample.w);
   EXPECT_EQ(collect_.samples[0].f, sample.f);
 }

@@ -52,8 +52,4 @@ void read_columns_csv(const std::string& path, const std::vector<std::string>& q
 /// Where the encoders' readings go when a log is written as a table at @p path: NAME_encoder.csv beside it.
 std::string encoder_table_of(const std::string& path);
 
-/// Writes samples as CSV with the header t_s,gyro_x_rad_s,...,accel_z_m_s2.
-std::string imu_csv_header(bool temperature = false);
-void append_imu_csv(double t, const InertialSample<double>& sample, std::string& out);
-
 }  // namespace trunnion::io

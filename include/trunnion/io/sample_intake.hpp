@@ -19,6 +19,8 @@ namespace trunnion::io {
 
 class SampleIntake {
  public:
+  static constexpr double kLargestReading = 1e6;  ///< rad/s, m/s^2, and rad of a table's column
+
   /// @param sink must outlive the intake
   explicit SampleIntake(SampleSink& sink) : sink_(sink) {}
 
@@ -83,7 +85,6 @@ class SampleIntake {
 
  private:
   static constexpr double kTolerableDamage = 1e-3;  // what cannot be used, against what can
-  static constexpr double kLargestReading = 1e6;    // rad/s, m/s^2
   static constexpr double kLargestAngle = 1e7;      // rad
   static constexpr double kColdest = -273.15;       // degC
   static constexpr double kHottest = 1000.0;

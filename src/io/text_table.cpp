@@ -1,0 +1,285 @@
+// SPDX-FileCopyrightText: 2026 the trunnion authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "text_table.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <cstring>
+
+#include "column_units.hpp"
+#include "strict_yaml.hpp"
+#include "trunnion/io/fault.hpp"
+#include "trunnion/io/sample_intake.hpp"
+#include "trunnion/io/whole_file.hpp"
+
+namespace trunnion::io {
+namespace {
+
+bool starts_number(const char* p, const char* end) {
+  if (p != end && (*p == '+' || *p == '-')) ++p;
+  return p != end && ((*p >= '0' && *p <= '9') || *p == '.');
+}
+
+}  // namespace
+
+TextTable::TextTable(const std::string& path, Sha256* digest) : path_(path), text_(read_whole(path)) {
+  if (digest != nullptr) digest->update(text_);
+  if (text_.find_first_not_of(" \t\r\n") == std::string::npos) throw input_error(path_, 0, "", "is empty");
+  if (is_utf_16(text_)) throw input_error(path_, 0, "", "is a text in UTF-16: save it as UTF-8");
+  next_ = text_.data();
+  end_ = next_ + text_.size();
+  if (std::string_view(text_).substr(0, kByteOrderMark.size()) == kByteOrderMark) next_ += kByteOrderMark.size();
+  skip_preamble();
+  const std::string_view first = current_line();
+  separator_ = first.find(',') != std::string::npos ? ',' : first.find(';') != std::string::npos ? ';' : ' ';
+  const char* p = first.data();
+  while (p != first.data() + first.size() && (*p == ' ' || *p == '\t')) ++p;
+  if (!starts_number(p, first.data() + first.size())) {
+    read_header(std::string(first));
+    header_line_ = line_ + 1;
+    next_line();
+  }
+}
+
+void TextTable::choose(const std::vector<std::string>& quantities, const ColumnMap& map, const SensorSheet& sheet) {
+  for (const std::string& quantity : quantities) {
+    Column column;
+    column.quantity = quantity;
+    std::string unit;
+    const auto chosen = map.find(quantity);
+    if (chosen != map.end()) {
+      column.index = chosen->second.name.empty() ? static_cast<std::size_t>(chosen->second.index)
+                                                 : find(chosen->second.name, quantity);
+      unit = chosen->second.unit;
+    } else {
+      unit = find_by_name(quantity, column.index);
+    }
+    if (unit == kSamples) {
+      if (!(sheet.rate_hz > 0.0))
+        throw input_error(path_, header_line_, quantity, "counts samples, and no sheet says their rate_hz");
+      column.si = 1.0 / sheet.rate_hz;
+    } else if (unit == kCounts) {
+      const NominalScale<double>& counts = quantity[0] == 'g' ? sheet.counts.gyro : sheet.counts.accel;
+      column.si = 1.0 / counts.scale;
+      column.zero = counts.zero;
+    } else {
+      column.si = unit_in_si(quantity, unit);
+    }
+    column.is_time = quantity == "t";
+    if (!column.is_time && quantity != kWeek) column.largest = SampleIntake::kLargestReading;
+    column.optional = quantity == kTemperature;
+    column.sparse = sparse_ && !column.is_time && quantity != kWeek;
+    columns_.push_back(column);
+    last_ = std::max(last_, column.index);
+    if (!column.optional) needed_ = std::max(needed_, column.index);
+  }
+  cells_.resize(last_ + 1);
+}
+
+bool TextTable::row(double* value) {
+  while (read_row()) {
+    std::size_t empty = 0;
+    std::size_t sparse = 0;
+    for (const Column& column : columns_) {
+      if (!column.sparse) continue;
+      ++sparse;
+      if (std::isnan(cells_[column.index])) ++empty;
+    }
+    if (empty > 0 && empty == sparse) continue;  // a row of something else
+    convert(value);
+    return true;
+  }
+  return false;
+}
+
+const HeaderSet* TextTable::header_set() const {
+  for (const HeaderSet& set : header_sets()) {
+    if (set.mark != nullptr && preamble_.find(set.mark) == std::string::npos) continue;
+    const bool all = std::all_of(set.sensors.begin(), set.sensors.end(),
+                                 [&](const char* name) { return place_of(name) < names_.size(); });
+    if (all && place_of(set.time) < names_.size() && (set.week == nullptr || place_of(set.week) < names_.size()))
+      return &set;
+  }
+  return nullptr;
+}
+
+bool TextTable::read_row() {
+  while (next_ != end_ && (*next_ == '\n' || *next_ == '\r' || *next_ == '#')) next_line();
+  if (next_ == end_) return false;
+  ++line_;
+  const char* p = next_;
+  std::size_t found = 0;
+  for (; found <= last_; ++found) {
+    while (p != end_ && (*p == ' ' || (*p == '\t' && separator_ == ' '))) ++p;
+    if (p == end_ || *p == '\n' || *p == '\r') break;
+    const char* from = *p == '+' ? p + 1 : p;
+    const auto [after, error] = std::from_chars(from, end_, cells_[found]);
+    const bool number = error == std::errc{};
+    p = number ? after : p;
+    if (number && p != end_ && *p == separator_ && separator_ != ' ') {  // as it is almost always
+      ++p;
+      continue;
+    }
+    const char* cell_end = p;
+    while (cell_end != end_ && *cell_end != '\n' && *cell_end != '\r' &&
+           *cell_end != (separator_ == ' ' ? '\t' : separator_) && (separator_ != ' ' || *cell_end != ' ')) {
+      ++cell_end;
+    }
+    if (!number || std::string_view(p, static_cast<std::size_t>(cell_end - p)).find_first_not_of(" \t") !=
+                       std::string_view::npos) {
+      const Column* const column = column_at(found);
+      cells_[found] = std::nan("");
+      if (column != nullptr && !column->optional && !(column->sparse && cell_end == p)) {
+        throw input_error(path_, line_, column->quantity,
+                          "should be a number, is '" + std::string(number ? from : p, cell_end) + "'");
+      }
+    }
+    p = cell_end;
+    if (p != end_ && *p == separator_ && separator_ != ' ') ++p;
+  }
+  if (found <= needed_) {
+    throw input_error(
+        path_, line_, "",
+        "row too short: " + std::to_string(found) + " columns, " + std::to_string(needed_ + 1) + " needed");
+  }
+  for (; found <= last_; ++found) cells_[found] = std::nan("");
+  next_ = p;
+  skip_rest();
+  return true;
+}
+
+void TextTable::convert(double* value) {
+  for (std::size_t i = 0; i < columns_.size(); ++i) {
+    const double cell = cells_[columns_[i].index];
+    if (columns_[i].optional) {
+      value[i] = SampleIntake::known_temperature(cell);
+      continue;
+    }
+    if (!std::isfinite(cell)) throw input_error(path_, line_, columns_[i].quantity, "is not finite");
+    value[i] = (cell - columns_[i].zero) * columns_[i].si;
+    if (columns_[i].is_time) microseconds_ = cell * (1e6 * columns_[i].si);
+    if (std::abs(value[i]) > columns_[i].largest) {
+      throw input_error(path_, line_, columns_[i].quantity, "is beyond any sensor");
+    }
+  }
+}
+
+void TextTable::skip_preamble() {
+  constexpr std::size_t kMostPreamble = 64;
+  const char* const begin = next_;
+  const char* at = next_;
+  long long lines = 0;
+  bool of_dot = false;  // whose lines are many, and not marked
+  const auto skip_to = [&](const char* to, long long count) {
+    next_ = to;
+    line_ = count;
+    preamble_.assign(begin, to);
+  };
+  for (std::size_t i = 0; i < kMostPreamble && at != end_; ++i) {
+    const auto* newline = static_cast<const char*>(std::memchr(at, '\n', static_cast<std::size_t>(end_ - at)));
+    const char* const after = newline != nullptr ? newline + 1 : end_;
+    std::string_view line(at, static_cast<std::size_t>((newline != nullptr ? newline : end_) - at));
+    line = line.substr(0, line.find_last_not_of(" \t\r,;") + 1);
+    ++lines;
+    const bool comment = line.empty() || line.rfind("//", 0) == 0 || line.rfind("sep=", 0) == 0;
+    if (line == "DATA_START") return skip_to(after, lines);
+    of_dot = of_dot || (next_ == at && line.rfind("DeviceTag:", 0) == 0);
+    const bool of_preamble = comment || (of_dot && line.rfind("PacketCounter", 0) != 0);
+    if (of_preamble && next_ == at) skip_to(after, lines);
+    at = after;
+  }
+}
+
+std::string_view TextTable::current_line() const {
+  const auto* newline = static_cast<const char*>(std::memchr(next_, '\n', static_cast<std::size_t>(end_ - next_)));
+  return {next_, static_cast<std::size_t>((newline != nullptr ? newline : end_) - next_)};
+}
+
+std::size_t TextTable::place_of(std::string_view name) const {
+  std::size_t i = 0;
+  for (; i < names_.size(); ++i) {
+    std::string_view here = names_[i];
+    if (here.size() > name.size() && here[here.size() - name.size() - 1] == ':')
+      here.remove_prefix(here.size() - name.size());
+    if (here == name) break;
+  }
+  return i;
+}
+
+void TextTable::skip_rest() {
+  const auto* newline = static_cast<const char*>(std::memchr(next_, '\n', static_cast<std::size_t>(end_ - next_)));
+  next_ = newline != nullptr ? newline + 1 : end_;
+}
+
+void TextTable::next_line() {
+  skip_rest();
+  ++line_;
+}
+
+const TextTable::Column* TextTable::column_at(std::size_t index) const {
+  for (const Column& column : columns_) {
+    if (column.index == index) return &column;
+  }
+  return nullptr;
+}
+
+void TextTable::read_header(const std::string& line) {
+  if (separator_ == ' ' && line.find('\t') != std::string::npos) separator_ = '\t';
+  std::string name;
+  const auto end_name = [&] {
+    while (!name.empty() && (name.back() == ' ' || name.back() == '\r')) name.pop_back();
+    if (!name.empty() && name[0] == '#') name.erase(0, name.find_first_not_of("# "));
+    if (separator_ != ' ' || !name.empty()) names_.push_back(name);
+    name.clear();
+  };
+  for (const char c : line) {
+    if (c == separator_ || (separator_ == ' ' && c == '\t')) {
+      end_name();
+    } else if (!(name.empty() && c == ' ')) {
+      name += c;
+    }
+  }
+  end_name();
+}
+
+std::size_t TextTable::find(const std::string& name, const std::string& quantity) const {
+  const std::size_t at = place_of(name);
+  if (at == names_.size()) {
+    throw input_error(
+        path_, header_line_, quantity,
+        "no column '" + name + "'" +
+            (names_.empty() ? ": the file has no header" : "; nearest is '" + nearest(name, names_) + "'"));
+  }
+  return at;
+}
+
+std::string TextTable::find_by_name(const std::string& quantity, std::size_t& index) const {
+  const Units units = units_of(quantity);
+  std::string wanted;
+  for (std::size_t i = 0; i < units.count; ++i) {
+    const std::string name = quantity + units.first[i].suffix;
+    wanted += (i == 0 ? "" : ", ") + name;
+    const auto at = std::find(names_.begin(), names_.end(), name);
+    if (at == names_.end()) continue;
+    index = static_cast<std::size_t>(at - names_.begin());
+    return units.first[i].name;
+  }
+  if (quantity == "t") {
+    const auto at = std::find(names_.begin(), names_.end(), "utime");
+    if (at != names_.end()) {
+      index = static_cast<std::size_t>(at - names_.begin());
+      return "us";
+    }
+  }
+  for (const std::string& name : names_) {
+    if (name == quantity) {
+      throw input_error(path_, header_line_, name,
+                        "the header has no unit: name it one of " + wanted + ", or map it under columns");
+    }
+  }
+  throw input_error(path_, header_line_, quantity,
+                    "no such column: name it one of " + wanted + ", or map it under columns");
+}
+
+}  // namespace trunnion::io

@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: 2026 the trunnion authors
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Rows of numbers from a text with columns: which column is what, by the header, by the user or by the program that
+/// wrote it, and each number in SI.
+
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "csv_headers.hpp"
+#include "trunnion/io/csv.hpp"
+#include "trunnion/io/digest.hpp"
+#include "trunnion/io/sensor_sheet.hpp"
+
+namespace trunnion::io {
+
+constexpr std::string_view kByteOrderMark("\xef\xbb\xbf", 3);
+
+inline bool is_utf_16(std::string_view text) {
+  return text.substr(0, 2) == "\xff\xfe" || text.substr(0, 2) == "\xfe\xff";
+}
+
+class TextTable {
+ public:
+  TextTable(const std::string& path, Sha256* digest);
+  /// Finds the columns of the quantities, by map or by header. @throws Error naming what is missing
+  void choose(const std::vector<std::string>& quantities, const ColumnMap& map, const SensorSheet& sheet);
+  /// Reads the next row; value[i] belongs to the i-th chosen quantity. @return false at the end
+  bool row(double* value);
+  [[nodiscard]] long long line() const { return line_; }
+  /// The time of the last row: nanoseconds since 1970 would lose their last digits as seconds.
+  [[nodiscard]] double microseconds() const { return microseconds_; }
+  [[nodiscard]] bool has_header() const { return !names_.empty(); }
+  [[nodiscard]] bool has_column(const std::string& name) const {
+    return std::find(names_.begin(), names_.end(), name) != names_.end();
+  }
+  [[nodiscard]] const std::string& path() const { return path_; }
+  /// Whose export this is, by its names; null for nobody's that is known.
+  [[nodiscard]] const HeaderSet* header_set() const;
+  /// From now on a row may lack all of a unit's readings: it is of another instrument.
+  void allow_rows_of_others() { sparse_ = true; }
+
+ private:
+  /// A column and how its numbers become SI: (number - zero) * si.
+  struct Column {
+    std::string quantity;
+    std::size_t index = 0;
+    double si = 1.0;
+    double zero = 0.0;
+    double largest = std::numeric_limits<double>::infinity();
+    bool optional = false;  // what is no number there is not known
+    bool sparse = false;    // ... and a row without any of these is none
+    bool is_time = false;
+  };
+
+  /// The cells of the next line that is no comment. @return false at the end
+  bool read_row();
+  void convert(double* value);
+  /// Lines above the header, as the programs that export tables write them.
+  void skip_preamble();
+  [[nodiscard]] std::string_view current_line() const;
+  /// Of the column of that name, alone or after the name of its instrument and a colon; names_.size() for none.
+  [[nodiscard]] std::size_t place_of(std::string_view name) const;
+  void skip_rest();
+  void next_line();
+  const Column* column_at(std::size_t index) const;
+  void read_header(const std::string& line);
+  std::size_t find(const std::string& name, const std::string& quantity) const;
+  std::string find_by_name(const std::string& quantity, std::size_t& index) const;
+
+  std::string path_;
+  std::string text_;
+  const char* next_ = nullptr;
+  const char* end_ = nullptr;
+  char separator_ = ',';
+  std::string preamble_;
+  long long header_line_ = 1;
+  std::vector<std::string> names_;
+  std::vector<Column> columns_;
+  std::vector<double> cells_;
+  std::size_t last_ = 0;
+  std::size_t needed_ = 0;
+  bool sparse_ = false;
+  double microseconds_ = 0.0;
+  long long line_ = 0;
+};
+
+}  // namespace trunnion::io
