@@ -90,6 +90,16 @@ TEST(NearestRotation, IsARotationAndLeavesRotationsAlone) {
   }
 }
 
+TEST(NearestRotation, RefusesWhatLeavesAnAxisOpen) {
+  EXPECT_EQ(nearest_rotation<double>(Mat3<double>::Zero()).status(), Status::kNotObservable);
+  EXPECT_EQ(nearest_rotation<double>(Mat3<double>::Ones()).status(), Status::kNotObservable);
+  // a reflection in a plane: the turn about its normal costs nothing
+  EXPECT_EQ(nearest_rotation<double>(Vec3<double>(1, 1, -1).asDiagonal()).status(), Status::kNotObservable);
+  Mat3<double> bad = Mat3<double>::Identity();
+  bad(1, 2) = std::nan("");
+  EXPECT_EQ(nearest_rotation(bad).status(), Status::kOutOfRange);
+}
+
 TEST(MostLikelyAttitude, IsTheMinimumAndItsCovarianceIsTrue) {
   Gaussian random(3, 0);
   double nees = 0.0;
@@ -190,6 +200,12 @@ TEST(AttitudeFromVectors, RefusesWhatIsNoFigure) {
   seen.value << 1, 0, 0;
   EXPECT_EQ(attitude_from_vectors(seen, RigidVectors<double, 1>(Vec3<double>::Zero())).status(), Status::kOutOfRange);
   EXPECT_EQ(attitude_from_vectors(seen, RigidVectors<double, 1>(Vec3<double>(1, 0, 0), -1.0)).status(),
+            Status::kOutOfRange);
+  const Quaternion<double> start = Quaternion<double>::Identity();
+  EXPECT_TRUE(most_likely_attitude(start, seen, figure).ok());
+  EXPECT_EQ(most_likely_attitude(start, seen, RigidVectors<double, 1>(Vec3<double>::Zero())).status(),
+            Status::kOutOfRange);
+  EXPECT_EQ(most_likely_attitude(Quaternion<double>(std::nan(""), 0, 0, 0), seen, figure).status(),
             Status::kOutOfRange);
 }
 

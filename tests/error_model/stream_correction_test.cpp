@@ -100,6 +100,23 @@ TEST(ThermalCorrection, UndoesWhatTheUnitDoesAtEveryTemperature) {
   }
 }
 
+TEST(ThermalCorrection, RefusesWhatNoUnitReads) {
+  Draw draw(5);
+  const InertialUnit<double> unit = any_unit(draw);
+  ThermalCorrection<double> correction(unit);
+  correction.set_temperature(45.0);
+  const InertialSample<double> reading = unit.distort({draw.vector(2.0), draw.vector(10.0)}, 45.0);
+  const auto found = correction.checked(reading);
+  ASSERT_TRUE(found.ok());
+  EXPECT_EQ(found.value().w, correction.correct(reading).w);
+  EXPECT_EQ(found.value().f, correction.correct(reading).f);
+  for (int i = 0; i < 6; ++i) {
+    InertialSample<double> bad = reading;
+    (i < 3 ? bad.w(i) : bad.f(i - 3)) = kNaN;
+    EXPECT_EQ(correction.checked(bad).status(), Status::kOutOfRange) << i;
+  }
+}
+
 // Eq. (6) against what accelerometers at their own places feel: second differences of their positions.
 TEST(SizeEffect, IsTheAccelerationOfThePlaces) {
   Draw draw(4);
@@ -161,6 +178,22 @@ TEST(StreamCorrection, UndoesTheSizeEffectAlongAMotion) {
     InertialSample<double> reading = unit.distort({w, f});
     reading.f += unit.size_effect(w, Vec3<double>::Zero());
     EXPECT_LT((correction.correct(t, reading).f - f).norm(), 1e-12);
+  }
+}
+
+TEST(StreamCorrection, IsTheThermalOneWhereTheAccelerometersAreInOnePlace) {
+  Draw draw(6);
+  const InertialUnit<double> unit = any_unit(draw);
+  StreamCorrection<double> stream(unit);
+  ThermalCorrection<double> thermal(unit);
+  for (int k = 0; k < 50; ++k) {
+    const double celsius = 20.0 + draw(40.0);
+    stream.set_temperature(celsius);
+    thermal.set_temperature(celsius);
+    const InertialSample<double> reading{draw.vector(2.0), draw.vector(10.0)};
+    const InertialSample<double> found = stream.correct(0.01 * k, reading);
+    EXPECT_EQ(found.w, thermal.correct(reading).w);
+    EXPECT_EQ(found.f, thermal.correct(reading).f);
   }
 }
 

@@ -199,6 +199,9 @@ TEST(IntegerLeastSquares, RefusesWhatIsNoProblem) {
   EXPECT_EQ(lambda(Vector(Eigen::Vector2d(0.1, 0.2)), Matrix(-one)).status(), Status::kOutOfRange);
   EXPECT_EQ(lambda(Vector(Eigen::Vector2d(0.1, 0.2)), Matrix(Eigen::Matrix2d::Ones())).status(), Status::kOutOfRange);
   EXPECT_EQ(lambda(Vector(Eigen::Vector3d(0.1, 0.2, 0.3)), one).status(), Status::kOutOfRange);
+  BoundedMatrix<double, kMost> huge = one;
+  huge(0, 1) = huge(1, 0) = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(lambda(Vector(Eigen::Vector2d(0.1, 0.2)), huge).status(), Status::kOutOfRange);
   std::mt19937_64 rng(5);
   const Problem hard = random_problem(20, rng);
   EXPECT_EQ(lambda(hard.a, hard.Q, {10}).status(), Status::kTimeOut);

@@ -111,6 +111,28 @@ TEST(AntennaPlace, IsFoundFromAnywhereAndItsVelocityToo) {
   }
 }
 
+/// Codes that fit no place: refused, or a place near the Earth that explains them to a kilometre.
+TEST(AntennaPlace, IsNotMadeUpOfCodesThatFitNone) {
+  GnssArray array(flying(3, 0.0), simulation::example_2_stand_in());
+  const auto& seen = array.next();
+  simulation::Gaussian random(3, 7);
+  int refused = 0;
+  for (int trial = 0; trial < 3000; ++trial) {
+    auto lying = seen.antenna[0];
+    lying.count = std::min(lying.count, 4 + trial % 3);
+    for (int i = 0; i < lying.count; ++i) lying.at[static_cast<std::size_t>(i)].code += 2e7 * random();
+    const auto place = antenna_place(lying);
+    if (!place.ok()) {
+      ++refused;
+      EXPECT_TRUE(place.status() == Status::kInconsistent || place.status() == Status::kNotObservable);
+      continue;
+    }
+    EXPECT_NEAR(place.value().r.norm(), kEarthRadius, 1e6);
+    EXPECT_GE(place.value().used, 4);
+  }
+  EXPECT_GT(refused, 2500);
+}
+
 /// Without noise everything closes: the light's way, the clocks 1 ms apart, the vehicle's way between their times.
 TEST(SingleDifferences, AreExactWhateverTheClocksAndTheSpeed) {
   for (const double speed : {0.0, 100.0, 250.0}) {
@@ -320,6 +342,29 @@ TEST(BroadcastOrbit, GoesRoundAsKeplerSays) {
     bad.m0 = std::nan("");
     EXPECT_EQ(satellite_at(bad, kStart).status(), Status::kOutOfRange);
   }
+}
+
+/// BeiDou's plane is tilted and turned back: over one place on the equator a satellite of the Earth's own rate stands.
+TEST(BroadcastOrbit, OfAGeostationarySatelliteStands) {
+  constexpr double kRate = 7.292115e-5;
+  constexpr double kLongitude = 110.5 * kRadPerDeg;
+  BroadcastOrbit orbit;
+  orbit.system = SatelliteSystem::kBeidou;
+  orbit.toe = orbit.toc = kStart;
+  orbit.toe_of_week = kStart.seconds;
+  const double a = std::cbrt(3.986004418e14 / (kRate * kRate));
+  orbit.sqrt_a = std::sqrt(a);
+  orbit.i0 = 5.0 * kRadPerDeg;
+  orbit.omega0 = kRate * orbit.toe_of_week + kPi;
+  orbit.m0 = kLongitude - kPi;
+  const Vec3<double> there = a * Vec3<double>(std::cos(kLongitude), std::sin(kLongitude), 0.0);
+  for (const int number : {1, 5, 59, 61}) {
+    orbit.number = number;
+    for (const double t : {-14000.0, -100.0, 0.0, 3000.0, 14000.0})
+      EXPECT_LT((satellite_at(orbit, kStart + t).value().r - there).norm(), 1e-5) << number << ' ' << t;
+  }
+  orbit.number = 6;  // one that goes round
+  EXPECT_GT((satellite_at(orbit, kStart + 3000.0).value().r - there).norm(), 1e6);
 }
 
 }  // namespace

@@ -146,6 +146,37 @@ TEST(CountDemodulator, AngleBinsAreWithinTheirCoarseness) {
   EXPECT_GT(worst[2], 0.0);
 }
 
+// A pulse that says of itself that it is none is a sample like any other.
+TEST(CountDemodulator, TakesAPulseThatIsNoneForASample) {
+  Platform p;
+  simulation::Gaussian dice(9, 9);
+  std::array<EncoderPhase, 2> phase = {EncoderPhase(p.start()), EncoderPhase(p.start())};
+  std::array<Demodulator, 2> demodulator;
+  std::array<Bins, 2> bins;
+  int turns = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const Platform::Sample s = p.sample(i, dice);
+    for (std::size_t k = 0; k < 2; ++k) {
+      const EncoderPhase::Step step = phase[k].add(s.angle);
+      if (step.pulse.before >= 0) {
+        turns += demodulator[k].add_with_pulse(s.counts, sin_cos(step.middle), step.pulse) ? 1 : 0;
+        (void)bins[k].add_with_pulse(s.counts, step.middle, step.pulse);
+      } else if (k == 0) {
+        (void)demodulator[k].add(s.counts, sin_cos(step.middle));
+        (void)bins[k].add(s.counts, step.middle);
+      } else {
+        IndexPulse none;
+        none.before = i % 2 == 0 ? -1 : 65537;
+        EXPECT_FALSE(demodulator[k].add_with_pulse(s.counts, sin_cos(step.middle), none));
+        EXPECT_FALSE(bins[k].add_with_pulse(s.counts, step.middle, none));
+      }
+    }
+  }
+  EXPECT_GE(turns, 6);
+  EXPECT_EQ(demodulator[0].split().body, demodulator[1].split().body);
+  EXPECT_EQ(bins[0].turn().split().body, bins[1].turn().split().body);
+}
+
 // Integers, a million samples: nothing is lost at a pulse, whichever side of it a count goes to.
 TEST(CountDemodulator, LosesNoCount) {
   simulation::Gaussian dice(2, 2);

@@ -136,6 +136,29 @@ TEST(IndexDemodulator, PassesOverAStrayPulse) {
 }
 
 // A platform that swings about its speed by a third within every turn: the axial gyro follows it.
+// A number that is none in the very sample of the pulse: the turn before it is lost, and the next is whole.
+TEST(IndexDemodulator, LosesOneTurnToAPulseWithoutASample) {
+  Bench unit = bench(0.5);
+  IndexDemodulator<double> demodulator(kPeriod, 0.0, 0.0);
+  int pulses = 0;
+  int seen = 0;
+  for (long long i = 200; i < 3000; ++i) {
+    double before = 0.0;
+    if (!unit.pulse(i, before)) {
+      demodulator.add(unit.sample(i));
+      continue;
+    }
+    InertialSample<double> sample = unit.sample(i);
+    if (++pulses == 5) sample.w.x() = std::numeric_limits<double>::quiet_NaN();
+    const Pulse pulse = demodulator.add_with_pulse(sample, before);
+    EXPECT_EQ(pulse == Pulse::kTurn, pulses != 1 && pulses != 5 && pulses != 6) << pulses;
+    if (pulse != Pulse::kTurn) continue;
+    ++seen;
+    EXPECT_NEAR((demodulator.turn().body.f - unit.body.f).head<2>().norm(), 0.0, 2e-3);
+  }
+  EXPECT_GT(seen, 8);
+}
+
 TEST(IndexDemodulator, FollowsUnevenSpeed) {
   Bench unit = bench(0.497);
   unit.course.oscillate(1.0, 30.0, 0.33, 0.497, 1.0);

@@ -227,6 +227,23 @@ TEST_F(TwoPosition, HoldsAndSaysSoWhenNobodySees) {
   EXPECT_NEAR(out, time(), 1e-6);
 }
 
+// The axial gyro at its end knows nothing of the body: the auxiliary unit is asked, and the filter is not told.
+TEST_F(TwoPosition, TakesTheAuxiliaryRateWhenTheAxialGyroIsAtItsEnd) {
+  TwoPositionModulation<double> at_the_end{kStep, kPi, 0.0, {2.0, 5.0, 1.0}, kNoise, kNoise};
+  int turns = 0;
+  for (int i = 0; i < 2000; ++i) {
+    (void)step();
+    FlipSample<double> turning = sample;
+    turning.auxiliary.w.z() = 0.2;
+    if (!at_the_end.add(turning) || at_the_end.interval().source != IntervalSource::kMain) continue;
+    ++turns;
+    EXPECT_EQ(at_the_end.fault(), FlipFault::kSaturated);
+    EXPECT_NEAR(at_the_end.interval().body.w.z(), 0.2, 1e-9);
+  }
+  EXPECT_GT(turns, 5);
+  EXPECT_EQ(at_the_end.gyro().state().norm(), 0.0);
+}
+
 TEST_F(TwoPosition, BridgesASampleThatIsNotANumber) {
   run(10.0);
   FlipSample<double> bad = sample;

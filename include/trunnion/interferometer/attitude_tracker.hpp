@@ -159,14 +159,11 @@ EpochAttitude<T, M> resolve_apart(const std::array<SingleDifferences<T, N>, stat
       }
     }
     if (fixes == 1 || !attitude.ok()) attitude = attitude_of_slave(epoch.seen, figure, has[0] ? 0 : 1);
-    if (attitude.ok()) {
-      epoch.status = fixed;
-      epoch.reason = Status::kOk;
-      epoch.attitude = attitude.value();
-      epoch.seen.rank = 3 * fixes;
-      return epoch;
-    }
     epoch.reason = attitude.status();
+    if (!attitude.ok()) return epoch;
+    epoch.status = fixed;
+    epoch.attitude = attitude.value();
+    epoch.seen.rank = 3 * fixes;
     return epoch;
   }
   if (codes < M) return epoch;
