@@ -46,6 +46,8 @@ class Converted final : public SampleSink {
     while (next_ < apart_.size() && apart_[next_].utime <= utime) pass_reading();
     writer_.imu(utime, sample);
     ++samples;
+    if (samples > 1 && utime < last_ && ++steps_back == 1) first_back = samples;
+    last_ = utime;
   }
   void temperature(double celsius) override {
     writer_.temperature(celsius);
@@ -61,6 +63,8 @@ class Converted final : public SampleSink {
 
   long long samples = 0;
   long long readings = 0;
+  long long steps_back = 0;  // of the stamps
+  long long first_back = 0;  // at this sample
   bool has_temperature = false;
 
  private:
@@ -72,6 +76,7 @@ class Converted final : public SampleSink {
   io::LogWriter& writer_;
   std::vector<Reading> apart_;
   std::size_t next_ = 0;
+  std::int64_t last_ = 0;
 };
 
 /// By the name that is stated, else by the extension of the output. @throws Error (usage)
@@ -119,6 +124,13 @@ void convert(const Options& o) {
   std::printf("\n");
   if (sink.has_temperature && !writer->holds_temperature())
     std::fprintf(stderr, "%s: the temperature is left out: this format has no place for it\n", o.output.c_str());
+  if (sink.steps_back > 0)
+    std::fprintf(stderr, "%s: stamps go back %lld times, first at sample %lld: kept as they are\n", o.input.c_str(),
+                 sink.steps_back, sink.first_back);
+  if (std::string(format.name) == "csv" && writer->files().size() == 1 &&
+      std::filesystem::exists(io::encoder_table_of(o.output)))
+    std::fprintf(stderr, "%s: is not of this recording, which has no readings of encoders\n",
+                 io::encoder_table_of(o.output).c_str());
   say_losses(losses);
   say_losses(lost);
 }

@@ -272,7 +272,7 @@ void add_inspect(CLI::App& app, ExitCode& exit_code) {
   command->add_option("--format", o->format, "Of the result")
       ->capture_default_str()
       ->check(CLI::IsMember({"text", "json"}));
-  command->add_option("--imu-channel", o->channels.imu.name,
+  command->add_option("--imu-channel,--channel", o->channels.imu.name,
                       "Of a log: channel or topic; default IMU in an LCM log, else the only one");
   command->add_option("--encoder-channel", o->channels.encoder.name,
                       "Of a log: channel or topic; default ENCODER in an LCM log, else the only one");

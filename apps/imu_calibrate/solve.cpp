@@ -126,9 +126,7 @@ ExitCode solve(const Options& o) {
     std::fprintf(stderr, "%lld samples were lost before they were recorded, as their sequence numbers say\n",
                  inputs.losses.samples);
   }
-  if (inputs.losses.bytes > 0) {
-    std::fprintf(stderr, "%lld damaged records, %lld bytes passed over\n", inputs.losses.records, inputs.losses.bytes);
-  }
+  say_losses(inputs.losses);
   file = calibration_of(run, solution, inputs, file.mounts);
   if (!o.output.empty()) io::write_whole(o.output, io::to_yaml(file));
   if (o.format == "json") {

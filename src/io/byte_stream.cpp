@@ -18,7 +18,7 @@ namespace trunnion::io {
 
 ByteStream::ByteStream(std::string path, Sha256* digest)
     : path_(std::move(path)), digest_(digest), buffer_(2 * kBlock) {
-  descriptor_ = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC);
+  descriptor_ = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);  // a pipe without a writer is refused
   if (descriptor_ < 0) throw input_error(path_, 0, "", std::string("cannot read: ") + std::strerror(errno));
   struct stat status {};
   const bool regular = ::fstat(descriptor_, &status) == 0 && S_ISREG(status.st_mode);

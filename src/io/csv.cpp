@@ -22,6 +22,7 @@ namespace trunnion::io {
 namespace {
 
 constexpr double kGpsEpoch = 315964800.0;  // s since 1970, leap seconds not counted
+constexpr long long kRowsBetween = 65536;  // two words of progress
 constexpr double kCounterWraps = 65536.0;  // samples: a counter of 16 bits, or one that never does
 
 std::int64_t to_utime(double us, const TextTable& table) {
@@ -80,25 +81,25 @@ void read_columns_csv(const std::string& path, const std::vector<std::string>& q
 namespace {
 
 /// The user's columns, and for the rest those of a program that is known, where the names are not our own.
-ColumnMap columns_of(const TextTable& table, const LogRequest& request, const HeaderSet*& set) {
+ColumnMap columns_of(const TextTable& table, const LogRequest& request, std::optional<KnownTable>& known) {
   ColumnMap map = request.columns;
-  set = table.header_set();
-  if (set == nullptr || std::any_of(kSensors.begin(), kSensors.end(), [&](const char* s) { return map.count(s) != 0; }))
-    set = nullptr;
-  if (set == nullptr) return map;
+  if (std::none_of(kSensors.begin(), kSensors.end(), [&](const char* s) { return map.count(s) != 0; }))
+    known = table.known();
+  if (!known) return map;
+  const HeaderSet& set = *known->set;
   if (map.count("t") == 0) {
-    map["t"] = {set->time, -1, set->time_unit};
-    if (set->week != nullptr) map[kWeek] = {set->week, -1, "weeks"};
+    map["t"] = {known->time, -1, set.time_unit};
+    if (set.week != nullptr) map[kWeek] = {set.week, -1, "weeks"};
   }
   for (std::size_t i = 0; i < kSensors.size(); ++i)
-    map[kSensors[i]] = {set->sensors[i], -1, i < 3 ? set->rate_unit : set->force_unit};
+    map[kSensors[i]] = {known->instrument + set.sensors[i], -1, i < 3 ? set.rate_unit : set.force_unit};
   return map;
 }
 
 LogLosses read_csv(const LogRequest& request, SampleSink& sink) {
   TextTable table(request.path, request.digest);
-  const HeaderSet* set = nullptr;
-  ColumnMap map = columns_of(table, request, set);
+  std::optional<KnownTable> known;
+  ColumnMap map = columns_of(table, request, known);
   // a table of encoders alone has a time of its own, unless its columns are said
   if (!request.need_imu && map.count("azimuth") == 0 && map.count("pitch") == 0) map.clear();
   std::vector<std::string> quantities = {"t"};
@@ -114,27 +115,36 @@ LogLosses read_csv(const LogRequest& request, SampleSink& sink) {
   if (request.need_imu && (map.count(kTemperature) != 0 || table.has_column("temperature_deg_c")))
     also(kTemperature, temperature);
   if (map.count(kWeek) != 0) also(kWeek, week);
-  if (set != nullptr) table.allow_rows_of_others();
+  if (known) table.allow_rows_of_others();
   table.choose(quantities, map, request.channels.sheet);
   const ColumnChoice time = map.count("t") != 0 ? map.at("t") : ColumnChoice{};
-  const double wraps_at = time.unit == kSamples ? 1e6 * kCounterWraps / request.channels.sheet.rate_hz
-                          : set != nullptr && time.name == set->time ? 1e6 * set->wraps_at * unit_in_si("t", time.unit)
-                                                                     : 0.0;
+  const double wraps_at = time.unit == kSamples               ? 1e6 * kCounterWraps / request.channels.sheet.rate_hz
+                          : known && time.name == known->time ? 1e6 * known->set->wraps_at * unit_in_si("t", time.unit)
+                                                              : 0.0;
   double wrapped = 0.0;
   double last = 0.0;
   long long rows = 0;
+  long long without_week = 0;
   std::vector<double> v(quantities.size());
   while (table.row(v.data())) {
+    if (request.progress && rows % kRowsBetween == 0) request.progress(table.done());
+    ++rows;
+    if (week > 0 && v[week] == 0.0) {
+      ++without_week;
+      continue;
+    }
     const double t = table.microseconds();
-    if (wraps_at > 0.0 && rows > 0 && last - t > 0.5 * wraps_at) wrapped += wraps_at;
+    if (wraps_at > 0.0 && rows > 1 && last - t > 0.5 * wraps_at) wrapped += wraps_at;
     last = t;
     const std::int64_t utime = to_utime(t + wrapped + (week > 0 ? 1e6 * (kGpsEpoch + v[week]) : 0.0), table);
     if (temperature > 0 && std::isfinite(v[temperature])) sink.temperature(v[temperature]);  // a slow one: empty cells
     if (request.need_imu) sink.imu(utime, {Vec3<double>(v[1], v[2], v[3]), Vec3<double>(v[4], v[5], v[6])});
     if (request.need_encoder) sink.encoder(utime, v[angles], v[angles + 1]);
-    ++rows;
   }
-  return {};
+  LogLosses losses;
+  if (without_week > 0)
+    losses.note = std::to_string(without_week) + " rows of GPS week 0, before the time was known, are left out";
+  return losses;
 }
 
 /// Text, for the most part ASCII.

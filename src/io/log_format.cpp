@@ -44,6 +44,32 @@ class LcmSampleWriter final : public LogWriter {
 
 }  // namespace
 
+struct Stranger {
+  std::string_view begins;
+  const char* what;
+};
+
+/// Files that people have and that are no log here: what to do with them.
+const Stranger kStrangers[] = {
+    {{"\x1f\x8b", 2}, "is compressed with gzip: expand it (gunzip -k)"},
+    {{"\x28\xb5\x2f\xfd", 4}, "is compressed with zstd: expand it (unzstd)"},
+    {{"\xfd"
+      "7zXZ",
+      5},
+     "is compressed with xz: expand it (unxz -k)"},
+    {{"BZh", 3}, "is compressed with bzip2: expand it (bunzip2 -k)"},
+    {{"PK\x03\x04", 4}, "is a zip archive: take the file out of it"},
+    {{"#ROSBAG V", 9}, "is a bag of ROS 1: convert it (rosbags-convert --dst-storage mcap)"},
+    {{"SQLite format 3", 15},
+     "is a database, as ROS 2 records into by default before Iron: convert it (ros2 bag convert) to MCAP"},
+    {{"\x89HDF", 4}, "is HDF5: write its samples as a table"},
+    {{"MATLAB 5.0 MAT-file", 19}, "is a MAT-file: write its samples as a table"},
+    {{"\x7f"
+      "ELF",
+      4},
+     "is a program"},
+};
+
 /// The last of the list: a log that begins with damage is one still.
 const LogFormat kLcmFormat = {
     "lcm",
@@ -70,6 +96,9 @@ const LogFormat& format_of(const std::string& path) {
   ByteStream file(path);
   file.have(kHead);
   const std::string_view head(file.data(), std::min(kHead, file.available()));
+  for (const Stranger& stranger : kStrangers) {
+    if (head.substr(0, stranger.begins.size()) == stranger.begins) throw input_error(path, 0, "", stranger.what);
+  }
   const std::vector<LogFormat>& formats = log_formats();
   return *std::find_if(formats.begin(), formats.end(), [&](const LogFormat& format) { return format.matches(head); });
 }

@@ -49,9 +49,36 @@ class AtByte {
   std::int64_t byte_;
 };
 
-/// Refuses a log that had not what was asked for. @param holds what it had instead, for people
-inline void require(const LogRequest& request, const SampleIntake& intake, const std::string& holds) {
-  intake.finish();
+/// A list of names for people: the first of them, and how many more there are.
+class NameList {
+ public:
+  void add(const std::string& name) {
+    if (names_++ < kMost) text_ += (text_.empty() ? "" : ", ") + printable(name);
+  }
+  [[nodiscard]] bool empty() const { return names_ == 0; }
+  [[nodiscard]] std::string text() const {
+    return text_ + (names_ > kMost ? " and " + std::to_string(names_ - kMost) + " more" : "");
+  }
+
+ private:
+  static constexpr std::size_t kMost = 20;
+  std::string text_;
+  std::size_t names_ = 0;
+};
+
+/// @param bytes at the end of a log that was cut there, within a record
+inline LogLosses losses_of(const SampleIntake& intake, std::int64_t bytes, const std::string& note) {
+  LogLosses losses;
+  losses.records = intake.damaged_records() + intake.lost_stretches() + (bytes > 0 ? 1 : 0);
+  losses.bytes = intake.damaged_bytes() + intake.lost_bytes() + bytes;
+  losses.note = note;
+  return losses;
+}
+
+/// Refuses a log that had not what was asked for. @param bytes of it; @param holds what it had instead, for people
+inline void require(const LogRequest& request, const SampleIntake& intake, std::int64_t bytes,
+                    const std::string& holds) {
+  intake.finish(bytes);
   if (request.need_imu && intake.samples() == 0)
     throw input_error(request.path, 0, "", "has no samples of an IMU" + (holds.empty() ? "" : "; it has " + holds));
   if (request.need_encoder && intake.encoders() == 0)

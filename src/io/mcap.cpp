@@ -30,8 +30,8 @@ constexpr std::string_view kMagic("\x89MCAP0\r\n", 8);
 constexpr std::size_t kRecordHeader = 9;
 constexpr std::uint64_t kLargestChunk = std::uint64_t{1} << 28U;
 constexpr std::uint64_t kLargestRecord = std::uint64_t{1} << 28U;  // of what is read
-constexpr std::size_t kMostChannels = 65536;
-constexpr std::size_t kNamedTopics = 20;  // in a message
+constexpr std::size_t kLongestName = 1024;                         // of a topic, a type or an encoding: ROS has 255
+constexpr std::uint64_t kJitter = 100000000;                       // ns, by which recorders mix up what comes at once
 constexpr std::uint32_t kChunkBytes = 1U << 20U;
 
 enum Kind : std::uint8_t {
@@ -70,7 +70,7 @@ class Fields {
     rest_.remove_prefix(static_cast<std::size_t>(length));
     return found;
   }
-  std::string text() { return std::string(bytes(number<std::uint32_t>())); }
+  std::string_view text() { return bytes(number<std::uint32_t>()); }
   [[nodiscard]] std::string_view rest() const { return rest_; }
   [[nodiscard]] bool whole() const { return whole_; }
 
@@ -151,6 +151,7 @@ class McapReader {
   LogLosses read() {
     stream_.skip(stream_.have(kMagic.size()) ? kMagic.size() : stream_.available());
     bool ended = false;
+    std::int64_t cut = 0;
     ByteProgress progress(request_.progress);
     while (!ended && stream_.have(kRecordHeader)) {
       const auto kind = static_cast<std::uint8_t>(stream_.data()[0]);
@@ -167,17 +168,15 @@ class McapReader {
       ended = kind == kDataEnd || kind == kFooter;
       progress.show(stream_);
     }
-    if (!ended) {
-      ++lost_records_;
-      lost_bytes_ += stream_.size() - stream_.offset();
-    }
+    if (!ended) cut = std::max<std::int64_t>(stream_.size() - stream_.offset(), 1);
     while (stream_.have(1)) stream_.skip(stream_.available());  // the digest is of all
-    finish();
-    std::string note = first_lost_;
+    finish(cut);
+    std::string note = intake_.first_loss();
     if (other_joints_ > 0)
       note += (note.empty() ? "" : "; ") + std::to_string(other_joints_) + " joint states without a position of '" +
               printable(request_.joints[0]) + "' and '" + printable(request_.joints[1]) + "' (axes of the run file)";
-    return {lost_records_ + intake_.damaged_records(), lost_bytes_ + intake_.damaged_bytes(), 0, note};
+    if (cut > 0) note += (note.empty() ? "" : "; ") + std::string("the recording was not ended");
+    return losses_of(intake_, cut, note);
   }
 
  private:
@@ -187,6 +186,9 @@ class McapReader {
     std::string type;
     RosEncoding encoding = RosEncoding::kCdr;
     Role role = Role::kOther;
+    std::int64_t chunk = 0;   // where the last one with its messages is
+    std::uint64_t first = 0;  // ns, of its messages there
+    std::uint64_t last = 0;
   };
 
   void take(std::uint8_t kind, std::string_view record) {
@@ -195,15 +197,20 @@ class McapReader {
     Fields fields(record);
     const auto id = fields.number<std::uint16_t>();
     if (kind == kSchema) {
-      if (schemas_.size() < kMostChannels) schemas_[id] = fields.text();
+      const std::string_view name = fields.text();
+      if (!fields.whole() || name.size() > kLongestName) return damage(record.size(), "schema", "has no name");
+      schemas_[id] = name;
       return;
     }
     const auto schema = fields.number<std::uint16_t>();
-    const std::string topic = fields.text();
-    const std::string encoding = fields.text();
+    const std::string topic(fields.text().substr(0, kLongestName));
+    const std::string_view encoding = fields.text().substr(0, kLongestName);
     if (!fields.whole()) return damage(record.size(), "channel", "is shorter than its members");
     if (channels_.count(id) != 0) return;
-    Channel channel{topic, schemas_[schema], encoding == "ros1" ? RosEncoding::kRos1 : RosEncoding::kCdr, Role::kOther};
+    Channel channel;
+    channel.topic = topic;
+    channel.type = schemas_[schema];
+    if (encoding == "ros1") channel.encoding = RosEncoding::kRos1;
     const bool known = encoding == "cdr" || encoding == "ros1";
     const std::string& imu = request_.channels.imu.name;
     const std::string& encoder = request_.channels.encoder.name;
@@ -213,8 +220,8 @@ class McapReader {
     if (named_imu || (!encoder.empty() && topic == encoder)) {
       if (named_imu ? !is_imu : !is_joints)
         throw input_error(request_.path, 0, printable(topic),
-                          "is of type " + printable(channel.type) + " in " + printable(encoding) + ", not " +
-                              (named_imu ? "sensor_msgs/msg/Imu" : "sensor_msgs/msg/JointState"));
+                          "is of type " + printable(channel.type) + " in " + printable(std::string(encoding)) +
+                              ", not " + (named_imu ? "sensor_msgs/msg/Imu" : "sensor_msgs/msg/JointState"));
     }
     if (is_imu && (imu.empty() || topic == imu)) channel.role = Role::kImu;
     if (is_joints && (encoder.empty() || topic == encoder)) channel.role = Role::kEncoder;
@@ -234,15 +241,17 @@ class McapReader {
     Fields fields(record);
     const auto channel = channels_.find(fields.number<std::uint16_t>());
     fields.number<std::uint32_t>();  // its number: zero where the recorder has none
-    fields.number<std::uint64_t>();
+    const auto log_time = fields.number<std::uint64_t>();
     fields.number<std::uint64_t>();
     if (!fields.whole()) return damage(record.size(), "message", "is shorter than its members");
     if (channel == channels_.end() || channel->second.role == Role::kOther) return;
-    const Channel& of = channel->second;
+    Channel& of = channel->second;
+    follow(of, log_time);
     std::string wrong;
     if (of.role == Role::kImu) {
       claim(imu_topic_, of.topic, "imu");
-      if (const auto imu = decode_ros_imu(fields.rest(), of.encoding, wrong))
+      const auto imu = decode_ros_imu(fields.rest(), of.encoding, wrong);
+      if (imu && (imu->utime != 0 || intake_.samples() == 0))  // simulated time begins at zero
         return intake_.imu(imu->utime, imu->sample, record.size(), AtByte(request_.path, byte_));
     } else {
       if (const auto at = decode_ros_joints(fields.rest(), of.encoding, request_.joints, wrong)) {
@@ -254,7 +263,20 @@ class McapReader {
         return;
       }
     }
+    if (wrong.empty()) wrong = "has no stamp: its header's is zero";
     damage(record.size(), of.topic, wrong);
+  }
+
+  /// Chunks that overlap in time, as recordings that were merged have them, are not put in order here.
+  void follow(Channel& of, std::uint64_t log_time) const {
+    if (of.chunk != byte_) {
+      if (log_time >= of.first && log_time + kJitter < of.last)
+        throw input_error_at_byte(request_.path, byte_, printable(of.topic),
+                                  "goes back within the time of the chunk before: sort the recording (mcap sort)");
+      of.chunk = byte_;
+      of.first = log_time;
+    }
+    of.last = log_time;
   }
 
   void chunk(std::string_view record) {
@@ -263,7 +285,7 @@ class McapReader {
     fields.number<std::uint64_t>();
     const auto size = fields.number<std::uint64_t>();
     const auto crc = fields.number<std::uint32_t>();
-    const std::string compression = fields.text();
+    const std::string compression(fields.text().substr(0, kLongestName));
     const std::string_view packed = fields.bytes(fields.number<std::uint64_t>());
     std::string wrong = !fields.whole()        ? "is shorter than its members"
                         : size > kLargestChunk ? "is larger than 256 MiB"
@@ -271,12 +293,8 @@ class McapReader {
     std::string_view records;
     if (wrong.empty()) wrong = inflater_.inflate(compression, packed, static_cast<std::size_t>(size), records);
     if (wrong.empty() && crc != 0 && crc32_of(records) != crc) wrong = "does not have its checksum";
-    if (!wrong.empty()) {
-      ++lost_records_;
-      lost_bytes_ += static_cast<long long>(record.size());
-      if (first_lost_.empty()) first_lost_ = input_error_at_byte(request_.path, byte_, "chunk", wrong).what();
-      return;
-    }
+    if (!wrong.empty())
+      return intake_.lose(static_cast<std::int64_t>(record.size()), AtByte(request_.path, byte_)("chunk", wrong));
     while (records.size() >= kRecordHeader) {
       const auto kind = static_cast<std::uint8_t>(records[0]);
       const auto length = load_little<std::uint64_t>(records.data() + 1);
@@ -296,16 +314,22 @@ class McapReader {
     intake_.damage(bytes, AtByte(request_.path, byte_)(printable(field), what));
   }
 
-  void finish() const {
-    std::set<std::string> topics;
-    for (const auto& [id, channel] : channels_) {
-      if (topics.size() < kNamedTopics)
-        topics.insert(printable(channel.topic) + (channel.type.empty() ? "" : " (" + printable(channel.type) + ")"));
+  void finish(std::int64_t cut) const {
+    std::set<std::string> readable;
+    std::set<std::string> other;
+    for (const auto& [id, channel] : channels_)
+      (is_type(channel.type, "sensor_msgs", "Imu") || is_type(channel.type, "sensor_msgs", "JointState") ? readable
+                                                                                                         : other)
+          .insert(channel.topic + (channel.type.empty() ? "" : " (" + channel.type + ")"));
+    NameList topics;
+    for (const auto* names : {&readable, &other}) {
+      for (const std::string& name : *names) topics.add(name);
     }
-    std::string holds;
-    for (const std::string& topic : topics) holds += (holds.empty() ? "topics " : ", ") + topic;
-    if (!first_lost_.empty() && intake_.samples() + intake_.encoders() == 0) throw Error(ExitCode::kInput, first_lost_);
-    require(request_, intake_, holds);
+    std::string holds = topics.empty() ? "" : "topics " + topics.text();
+    const bool empty = intake_.samples() + intake_.encoders() == 0;
+    if (empty && cut > 0) holds += (holds.empty() ? "" : ", and ") + std::string("was cut before their messages");
+    if (empty && !intake_.first_loss().empty()) throw Error(ExitCode::kInput, intake_.first_loss());
+    require(request_, intake_, stream_.size(), holds);
   }
 
   const LogRequest& request_;
@@ -316,10 +340,7 @@ class McapReader {
   std::map<std::uint16_t, Channel> channels_;
   std::string imu_topic_;
   std::string encoder_topic_;
-  std::string first_lost_;
   std::int64_t byte_ = 0;  // of the record in the file
-  long long lost_records_ = 0;
-  long long lost_bytes_ = 0;
   long long other_joints_ = 0;
 };
 

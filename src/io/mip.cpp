@@ -19,6 +19,7 @@ namespace {
 
 constexpr std::size_t kHeader = 4;
 constexpr std::size_t kChecksum = 2;
+constexpr std::int64_t kLongestPacket = 261;
 constexpr std::uint8_t kSensorSet = 0x80;
 constexpr std::int64_t kLongestStep = 1000000;  // us, between two packets of increments
 constexpr double kSecondsPerWeek = 604800.0;
@@ -54,7 +55,7 @@ struct SensorPacket {
   std::optional<std::int64_t> period_ns;
   std::optional<std::int64_t> gps_us;  // since 1970, ahead of UTC by the leap seconds
 
-  /// @return false for a field whose length is not that of its kind
+  /// @return false for a field whose length is not that of its kind, and for a second of its kind
   bool take(std::uint8_t descriptor, const char* p, std::size_t length) {
     switch (descriptor) {
       case 0x04:
@@ -85,14 +86,15 @@ struct SensorPacket {
     }
   }
 
-  [[nodiscard]] std::optional<std::int64_t> utime() const {
-    if (reference_ns) return *reference_ns / 1000 + (*reference_ns % 1000 >= 500 ? 1 : 0);
-    return gps_us;
+  [[nodiscard]] std::optional<std::int64_t> reference_us() const {
+    if (!reference_ns) return std::nullopt;
+    return *reference_ns / 1000 + (*reference_ns % 1000 >= 500 ? 1 : 0);
   }
 
  private:
   template <class T, class U>
   static bool set(std::optional<T>& field, const U& value) {
+    if (field) return false;
     field = value;
     return true;
   }
@@ -101,22 +103,29 @@ struct SensorPacket {
 class MipReader {
  public:
   MipReader(const LogRequest& request, SampleSink& sink)
-      : request_(request), stream_(request.path, request.digest), intake_(sink) {}
+      : request_(request), stream_(request.path, request.digest), intake_(sink) {
+    if (!request.channels.imu.name.empty())
+      throw input_error(
+          request.path, 0, "",
+          "is a MIP stream: it has no channel '" + printable(request.channels.imu.name) + "', but one unit");
+  }
 
   LogLosses read() {
     ByteProgress progress(request_.progress);
     while (stream_.have(kHeader + kChecksum)) {
       const std::size_t length = kHeader + byte_at(stream_.data() + 3) + kChecksum;
       if (!begins_packet(stream_.data()) || !stream_.have(length) || !sums_up(stream_.data(), length)) {
-        lose();
+        stream_.skip(1);
+        ++lost_;
         continue;
       }
-      synchronised_ = true;
+      found();
       if (byte_at(stream_.data() + 2) == kSensorSet) sensor(length);
       stream_.skip(length);
       progress.show(stream_);
     }
-    lost_bytes_ += static_cast<long long>(stream_.available());
+    const std::int64_t cut = lost_ + static_cast<std::int64_t>(stream_.available());
+    if (cut > kLongestPacket) found();
     std::string note;
     const auto say = [&](long long count, const char* what) {
       if (count > 0) note += (note.empty() ? "" : ", ") + std::to_string(count) + " packets of sensor data " + what;
@@ -124,16 +133,17 @@ class MipReader {
     say(without_time_, "without a stamp");
     say(without_pair_, "with either rates or specific forces, not both");
     say(without_period_, "with increments after a gap");
-    require(request_, intake_, note.empty() ? "MIP packets" : note);
-    return {lost_records_ + intake_.damaged_records(), lost_bytes_ + intake_.damaged_bytes(), 0, note};
+    require(request_, intake_, stream_.size(), note.empty() ? "MIP packets" : note);
+    return losses_of(intake_, cut > kLongestPacket ? 0 : cut, note);
   }
 
  private:
-  void lose() {
-    if (synchronised_) ++lost_records_;
-    synchronised_ = false;
-    stream_.skip(1);
-    ++lost_bytes_;
+  /// A packet, or the end: what lies between it and the last one is lost.
+  void found() {
+    if (lost_ == 0) return;
+    const std::int64_t bytes = lost_;
+    intake_.lose(bytes, AtByte(request_.path, stream_.offset() - bytes)("", "is no packet"));
+    lost_ = 0;
   }
 
   void sensor(std::size_t length) {
@@ -143,10 +153,13 @@ class MipReader {
     for (std::size_t at = kHeader; at + kChecksum < length;) {
       const std::size_t field = byte_at(p + at);
       if (field < 2 || at + field + kChecksum > length || !packet.take(byte_at(p + at + 1), p + at + 2, field - 2))
-        return intake_.damage(length, fault("field " + std::to_string(byte_at(p + at + 1)), "has a wrong length"));
+        return intake_.damage(length,
+                              fault("field " + std::to_string(byte_at(p + at + 1)), "has a wrong length, or is twice"));
       at += field;
     }
-    const std::optional<std::int64_t> utime = packet.utime();
+    if (clock_ == Clock::kNone && packet.reference_ns) clock_ = Clock::kReference;
+    if (clock_ == Clock::kNone && packet.gps_us) clock_ = Clock::kGps;
+    const std::optional<std::int64_t> utime = clock_ == Clock::kReference ? packet.reference_us() : packet.gps_us;
     const double period = 1e-9 * static_cast<double>(packet.period_ns.value_or(1000 * steady_step(utime)));
     // increments are of the unit's own period: where it does not state it, a step like the one before
     if (!packet.rate && !packet.force && packet.delta_angle && packet.delta_velocity) {
@@ -177,14 +190,15 @@ class MipReader {
     return steady && step < kLongestStep ? step : 0;
   }
 
+  enum class Clock { kNone, kReference, kGps };
+
   const LogRequest& request_;
   ByteStream stream_;
   SampleIntake intake_;
+  Clock clock_ = Clock::kNone;  // of the first packet, and of all: they count from different days
   std::int64_t step_ = 0;
   std::optional<std::int64_t> last_;
-  bool synchronised_ = true;
-  long long lost_records_ = 0;
-  long long lost_bytes_ = 0;
+  std::int64_t lost_ = 0;  // bytes since the last packet
   long long without_time_ = 0;
   long long without_pair_ = 0;
   long long without_period_ = 0;

@@ -19,6 +19,9 @@ using namespace rinex;
 
 namespace {
 
+constexpr int kFirstYear = 1981;  // whose GPS weeks count
+constexpr int kEndYear = 2150;
+
 /// One message: the number of its lines, and what it says. @return false when a needed number is missing
 bool read_orbit(const std::vector<std::string_view>& lines, bool version_2, BroadcastOrbit& orbit) {
   const std::size_t first = version_2 ? 22 : 23;
@@ -131,12 +134,12 @@ void OrbitBook::add(const std::string& path) {
         date[i] = version_2 ? integer(part(head, 2 + 3 * i, 3))
                             : integer(i == 0 ? part(head, 3, 5) : part(head, 5 + 3 * i, 3));
       const std::optional<double> second = number(version_2 ? part(head, 17, 5) : part(head, 20, 3));
-      const bool dated = date[0] && date[1] && date[2] && date[3] && date[4] && second && *date[1] >= 1 &&
-                         *date[1] <= 12 && *date[0] >= 0 && *date[0] < 2200 && *date[2] >= 1 && *date[2] <= 31 &&
+      int year = date[0].value_or(0);
+      if (version_2) year += year < kFirstYear % 100 ? 2000 : 1900;
+      const bool dated = date[0] && date[1] && date[2] && date[3] && date[4] && second && year >= kFirstYear &&
+                         year < kEndYear && *date[1] >= 1 && *date[1] <= 12 && *date[2] >= 1 && *date[2] <= 31 &&
                          std::abs(*date[3]) < 25 && std::abs(*date[4]) < 61;
       if (dated && read_orbit(lines, version_2, orbit)) {
-        int year = *date[0];
-        if (version_2) year += year < 80 ? 2000 : 1900;
         const double behind = orbit.system == SatelliteSystem::kBeidou ? kBeidouBehind : 0.0;
         const GpsTime toc = gps_time(year, *date[1], *date[2], *date[3], *date[4], *second);
         GpsTime toe{toc.week, orbit.toe_of_week};

@@ -56,12 +56,13 @@ class RosFields {
     return cdr_ && !found.empty() && found.back() == '\0' ? found.substr(0, found.size() - 1) : found;
   }
 
-  /// std_msgs/Header. @return its stamp [us]
-  std::int64_t header() {
+  /// std_msgs/Header. @return its stamp [us]; nothing for one with a second of nanoseconds or more
+  std::optional<std::int64_t> header() {
     if (!cdr_) number<std::uint32_t>();
     const std::int64_t seconds = number<std::int32_t>();
     const std::int64_t nanoseconds = number<std::uint32_t>();
     text();
+    if (nanoseconds >= 1000000000) return std::nullopt;
     return 1000000 * seconds + (nanoseconds + 500) / 1000;
   }
 
@@ -120,13 +121,14 @@ class CdrWriter {
 };
 
 constexpr const char* kCut = "is shorter than its type";
+constexpr const char* kNoStamp = "has a stamp with more than a second of nanoseconds";
 
 }  // namespace
 
 std::optional<RosImu> decode_ros_imu(std::string_view message, RosEncoding encoding, std::string& wrong) {
   RosFields fields(message, encoding);
   RosImu imu;
-  imu.utime = fields.header();
+  const std::optional<std::int64_t> utime = fields.header();
   for (int i = 0; i < 4; ++i) fields.number<double>();
   fields.covariance();
   imu.sample.w = fields.vector();
@@ -134,10 +136,12 @@ std::optional<RosImu> decode_ros_imu(std::string_view message, RosEncoding encod
   imu.sample.f = fields.vector();
   const bool has_force = fields.covariance() != -1.0;
   wrong = !fields.whole() ? kCut
+          : !utime        ? kNoStamp
           : !has_rate     ? "says that it has no angular velocity"
           : !has_force    ? "says that it has no linear acceleration"
                           : "";
   if (!wrong.empty()) return std::nullopt;
+  imu.utime = *utime;
   return imu;
 }
 
@@ -145,7 +149,7 @@ std::optional<RosAngles> decode_ros_joints(std::string_view message, RosEncoding
                                            const std::array<std::string, 2>& joints, std::string& wrong) {
   RosFields fields(message, encoding);
   RosAngles found;
-  found.utime = fields.header();
+  const std::optional<std::int64_t> utime = fields.header();
   const auto names = fields.number<std::uint32_t>();
   if (!fields.whole() || names > kMostNames) {
     wrong = fields.whole() ? "has more than a thousand names" : kCut;
@@ -170,10 +174,12 @@ std::optional<RosAngles> decode_ros_joints(std::string_view message, RosEncoding
   }
   wrong.clear();
   if (!fields.whole()) wrong = kCut;
+  if (wrong.empty() && !utime) wrong = kNoStamp;
   for (std::size_t i = 0; i < 2 && wrong.empty(); ++i) {
     if (!there[i]) wrong = "has no position of a joint '" + joints[i] + "'";
   }
   if (!wrong.empty()) return std::nullopt;
+  found.utime = *utime;
   return found;
 }
 

@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "column_units.hpp"
+#include "log_formats.hpp"
 #include "strict_yaml.hpp"
 #include "trunnion/io/fault.hpp"
 #include "trunnion/io/sample_intake.hpp"
@@ -15,6 +16,12 @@
 
 namespace trunnion::io {
 namespace {
+
+/// Whether a column is of that name, alone or after the name of its instrument and a colon.
+bool ends_in(const std::string& column, std::string_view name) {
+  if (column.size() < name.size() || column.compare(column.size() - name.size(), name.size(), name) != 0) return false;
+  return column.size() == name.size() || column[column.size() - name.size() - 1] == ':';
+}
 
 bool starts_number(const char* p, const char* end) {
   if (p != end && (*p == '+' || *p == '-')) ++p;
@@ -93,19 +100,35 @@ bool TextTable::row(double* value) {
   return false;
 }
 
-const HeaderSet* TextTable::header_set() const {
+std::optional<KnownTable> TextTable::known() const {
   for (const HeaderSet& set : header_sets()) {
     if (set.mark != nullptr && preamble_.find(set.mark) == std::string::npos) continue;
-    const bool all = std::all_of(set.sensors.begin(), set.sensors.end(),
-                                 [&](const char* name) { return place_of(name) < names_.size(); });
-    if (all && place_of(set.time) < names_.size() && (set.week == nullptr || place_of(set.week) < names_.size()))
-      return &set;
+    const std::string_view first = set.sensors[0];
+    std::optional<KnownTable> found;
+    for (const std::string& name : names_) {
+      if (!ends_in(name, first)) continue;
+      const std::string instrument = name.substr(0, name.size() - first.size());
+      const bool all = std::all_of(set.sensors.begin(), set.sensors.end(),
+                                   [&](const char* sensor) { return has_column(instrument + sensor); });
+      const std::string time = has_column(instrument + set.time) ? instrument + set.time : set.time;
+      if (!all || !has_column(time) || (set.week != nullptr && !has_column(set.week))) continue;
+      if (found)
+        throw input_error(path_, header_line_, name,
+                          "is there of '" + found->instrument + "' too: map the columns of one under columns:");
+      found = KnownTable{&set, instrument, time};
+    }
+    if (found) return found;
   }
-  return nullptr;
+  return std::nullopt;
 }
 
 bool TextTable::read_row() {
-  while (next_ != end_ && (*next_ == '\n' || *next_ == '\r' || *next_ == '#')) next_line();
+  const auto is_blank = [&] {
+    const char* p = next_;
+    while (p != end_ && (*p == ' ' || *p == '\t' || *p == '\r')) ++p;
+    return p == end_ || *p == '\n' || *p == '#';
+  };
+  while (next_ != end_ && is_blank()) next_line();
   if (next_ == end_) return false;
   ++line_;
   const char* p = next_;
@@ -196,17 +219,6 @@ std::string_view TextTable::current_line() const {
   return {next_, static_cast<std::size_t>((newline != nullptr ? newline : end_) - next_)};
 }
 
-std::size_t TextTable::place_of(std::string_view name) const {
-  std::size_t i = 0;
-  for (; i < names_.size(); ++i) {
-    std::string_view here = names_[i];
-    if (here.size() > name.size() && here[here.size() - name.size() - 1] == ':')
-      here.remove_prefix(here.size() - name.size());
-    if (here == name) break;
-  }
-  return i;
-}
-
 void TextTable::skip_rest() {
   const auto* newline = static_cast<const char*>(std::memchr(next_, '\n', static_cast<std::size_t>(end_ - next_)));
   next_ = newline != nullptr ? newline + 1 : end_;
@@ -244,42 +256,58 @@ void TextTable::read_header(const std::string& line) {
 }
 
 std::size_t TextTable::find(const std::string& name, const std::string& quantity) const {
-  const std::size_t at = place_of(name);
-  if (at == names_.size()) {
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < names_.size(); ++i) {
+    if (ends_in(names_[i], name)) places.push_back(i);
+  }
+  const auto whole =
+      std::find_if(places.begin(), places.end(), [&](std::size_t i) { return names_[i].size() == name.size(); });
+  if (whole != places.end()) return *whole;
+  if (places.empty()) {
     throw input_error(
         path_, header_line_, quantity,
         "no column '" + name + "'" +
             (names_.empty() ? ": the file has no header" : "; nearest is '" + nearest(name, names_) + "'"));
   }
-  return at;
+  if (places.size() > 1)
+    throw input_error(path_, header_line_, quantity,
+                      "is '" + names_[places[0]] + "' and '" + names_[places[1]] + "': write one of them out");
+  return places[0];
 }
 
 std::string TextTable::find_by_name(const std::string& quantity, std::size_t& index) const {
   const Units units = units_of(quantity);
   std::string wanted;
-  for (std::size_t i = 0; i < units.count; ++i) {
-    const std::string name = quantity + units.first[i].suffix;
-    wanted += (i == 0 ? "" : ", ") + name;
-    const auto at = std::find(names_.begin(), names_.end(), name);
-    if (at == names_.end()) continue;
-    index = static_cast<std::size_t>(at - names_.begin());
-    return units.first[i].name;
-  }
-  if (quantity == "t") {
-    const auto at = std::find(names_.begin(), names_.end(), "utime");
-    if (at != names_.end()) {
-      index = static_cast<std::size_t>(at - names_.begin());
-      return "us";
+  std::string unit;
+  const auto look_for = [&](const std::string& name, const char* its_unit) {
+    wanted += (wanted.empty() ? "" : ", ") + name;
+    for (std::size_t i = 0; i < names_.size(); ++i) {
+      if (names_[i] != name) continue;
+      if (!unit.empty())
+        throw input_error(path_, header_line_, quantity,
+                          "is there twice, as '" + names_[index] + "' and '" + name + "': map one under columns:");
+      index = i;
+      unit = its_unit;
     }
-  }
+  };
+  for (std::size_t i = 0; i < units.count; ++i) look_for(quantity + units.first[i].suffix, units.first[i].name);
+  if (quantity == "t") look_for("utime", "us");
+  if (!unit.empty() || (units.count == 1 && has_column(wanted))) return unit;
   for (const std::string& name : names_) {
     if (name == quantity) {
-      throw input_error(path_, header_line_, name,
-                        "the header has no unit: name it one of " + wanted + ", or map it under columns");
+      throw input_error(
+          path_, header_line_, name,
+          "the header has no unit: name it one of " + wanted + ", or map it under columns: in a run file");
     }
   }
+  if (names_.empty())
+    throw input_error(path_, header_line_, quantity,
+                      "no such column: the file has no header; map its columns by index under columns: in a run file");
+  NameList own;
+  for (const std::string& name : names_) own.add(name);
   throw input_error(path_, header_line_, quantity,
-                    "no such column: name it one of " + wanted + ", or map it under columns");
+                    "no such column: name it one of " + wanted +
+                        ", or map one of its own under columns: in a run file: " + own.text());
 }
 
 }  // namespace trunnion::io

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,6 +27,13 @@ inline bool is_utf_16(std::string_view text) {
   return text.substr(0, 2) == "\xff\xfe" || text.substr(0, 2) == "\xfe\xff";
 }
 
+/// A table of a program that is known, and what its columns are called in it.
+struct KnownTable {
+  const HeaderSet* set;
+  std::string instrument;  ///< before each name of a sensor, with its colon, or empty
+  std::string time;
+};
+
 class TextTable {
  public:
   TextTable(const std::string& path, Sha256* digest);
@@ -41,8 +49,13 @@ class TextTable {
     return std::find(names_.begin(), names_.end(), name) != names_.end();
   }
   [[nodiscard]] const std::string& path() const { return path_; }
-  /// Whose export this is, by its names; null for nobody's that is known.
-  [[nodiscard]] const HeaderSet* header_set() const;
+  /// Whose export this is, by its names, and of which of its instruments; nothing for nobody's that is known.
+  /// @throws Error (input) where two instruments have all of a unit's columns
+  [[nodiscard]] std::optional<KnownTable> known() const;
+  /// How much of the text has been read, in [0, 1].
+  [[nodiscard]] double done() const {
+    return static_cast<double>(next_ - text_.data()) / static_cast<double>(text_.size());
+  }
   /// From now on a row may lack all of a unit's readings: it is of another instrument.
   void allow_rows_of_others() { sparse_ = true; }
 
@@ -65,12 +78,12 @@ class TextTable {
   /// Lines above the header, as the programs that export tables write them.
   void skip_preamble();
   [[nodiscard]] std::string_view current_line() const;
-  /// Of the column of that name, alone or after the name of its instrument and a colon; names_.size() for none.
-  [[nodiscard]] std::size_t place_of(std::string_view name) const;
   void skip_rest();
   void next_line();
   const Column* column_at(std::size_t index) const;
   void read_header(const std::string& line);
+  /// Of the column of that name, or, where there is one only, of that name after an instrument's and a colon.
+  /// @throws Error (input) naming what is near it, or that there are two
   std::size_t find(const std::string& name, const std::string& quantity) const;
   std::string find_by_name(const std::string& quantity, std::size_t& index) const;
 

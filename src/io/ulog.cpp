@@ -10,7 +10,9 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
+#include <vector>
 
 #include "byte_stream.hpp"
 #include "little_endian.hpp"
@@ -22,17 +24,19 @@ namespace {
 constexpr std::string_view kMagic("ULog\x01\x12\x35", 7);
 constexpr std::size_t kFileHeader = 16;
 constexpr std::size_t kMessageHeader = 3;
-constexpr std::string_view kSync("\x2f\x73\x13\x20\x25\x0c\xbb\x12", 8);  // of an S message
+constexpr std::string_view kKinds = "ABCDFILMOPQRS";  // of messages
+constexpr int kSureAfter = 4;                         // messages in a row, that bytes are no damage
+constexpr std::size_t kFlagBytes = 16;                // of a B message, before the offsets of what was appended
+constexpr std::size_t kMostAppended = 3;
 constexpr std::size_t kMostFormats = 4096;
 constexpr int kMostNesting = 8;
 constexpr int kMostFields = 10000;  // of a topic with those nested in it
 constexpr std::size_t kLongestMessage = 65535;
+constexpr std::int64_t kLongestTail = kMessageHeader + kLongestMessage;  // of a log that was cut
 constexpr int kMostElements = 10000;
-constexpr std::size_t kNamedTopics = 20;  // in a message
 constexpr std::int32_t kNotRelative = std::numeric_limits<std::int32_t>::max();
 constexpr const char* kCombined = "sensor_combined";
 constexpr const char* kIntegrals = "vehicle_imu";
-constexpr std::uint16_t kNone = 0xffff;
 
 std::size_t size_of(std::string_view type) {
   if (type == "int8_t" || type == "uint8_t" || type == "bool" || type == "char") return 1;
@@ -138,61 +142,86 @@ class UlogReader {
     stream_.have(kFileHeader);
     stream_.skip(std::min(kFileHeader, stream_.available()));
     ByteProgress progress(request_.progress);
+    std::int64_t cut = 0;
     while (stream_.have(kMessageHeader)) {
-      const std::size_t length = load_little<std::uint16_t>(stream_.data());
-      const char kind = stream_.data()[2];
-      if (kind < 'A' || kind > 'Z' || length == 0 || !stream_.have(kMessageHeader + length)) {
-        lose();
+      const std::size_t length = length_at(0);
+      if (length == 0) {
+        const std::int64_t from = stream_.offset();
+        const bool goes_on = resume();
+        const std::int64_t lost = (goes_on ? stream_.offset() : stream_.size()) - from;
+        if (!goes_on && lost <= kLongestTail)
+          cut = lost;
+        else
+          intake_.lose(lost, AtByte(request_.path, from)("message", "is none"));
         continue;
       }
-      message(kind, {stream_.data() + kMessageHeader, length});
-      stream_.skip(kMessageHeader + length);
+      message(stream_.data()[2], {stream_.data() + kMessageHeader, length - kMessageHeader});
+      stream_.skip(length);
       progress.show(stream_);
     }
-    if (stream_.available() > 0) {
-      ++lost_records_;
-      lost_bytes_ += static_cast<long long>(stream_.available());
+    cut += static_cast<std::int64_t>(stream_.available());  // less than a header
+    NameList topics;
+    for (const bool readable : {true, false}) {
+      for (const std::string& name : topics_) {
+        if (readable == is_readable(name)) topics.add(name);
+      }
     }
-    std::string holds;
-    std::size_t named = 0;
-    for (const auto& [name, number] : topics_) {
-      if (named++ == kNamedTopics) break;
-      holds += (holds.empty() ? "topics " : ", ") + printable(name);
-    }
-    require(request_, intake_, holds);
+    require(request_, intake_, stream_.size(), topics.empty() ? "" : "topics " + topics.text());
     std::string note;
-    if (!own_.empty()) note = "the vehicle's own " + own_ + " are in these readings";
+    for (const NameList* own : {&rotations_, &offsets_}) {
+      if (!own->empty()) note += (note.empty() ? "the vehicle's own " : ", ") + own->text();
+    }
+    if (!note.empty()) note += " are in its units' readings";
     if (dropouts_ > 0)
       note += (note.empty() ? "" : "; ") + std::to_string(dropouts_) + " dropouts of the logger, " +
               std::to_string(dropped_ms_) + " ms in all";
-    return {lost_records_ + intake_.damaged_records(), lost_bytes_ + intake_.damaged_bytes(), 0, note};
+    return losses_of(intake_, cut, note);
   }
 
  private:
-  /// On to the next mark that the logger sets for this, or the end.
-  void lose() {
-    ++lost_records_;
-    lost_bytes_ += 1;
-    stream_.skip(1);
-    const std::size_t mark = kMessageHeader + kSync.size();
-    while (stream_.have(mark)) {
-      const std::string_view rest(stream_.data(), stream_.available());
-      const std::size_t at = rest.find(kSync, kMessageHeader);
-      const bool here = at != std::string_view::npos && rest[at - 1] == 'S';
-      const std::size_t step = here                           ? at - kMessageHeader
-                               : at != std::string_view::npos ? at - kMessageHeader + 1
-                                                              : rest.size() - mark + 1;
-      stream_.skip(step);
-      lost_bytes_ += static_cast<long long>(step);
-      if (here) return;
-    }
-    lost_bytes_ += static_cast<long long>(stream_.available());
-    stream_.skip(stream_.available());
+  static bool is_readable(const std::string& topic) {
+    const std::string name = topic.substr(0, topic.find('#'));
+    return name == kCombined || name == kIntegrals;
+  }
+
+  /// Of the message @p at bytes from here, with its header; zero where there is none, or not all of it.
+  std::size_t length_at(std::size_t at) {
+    if (!stream_.have(at + kMessageHeader)) return 0;
+    const char* const p = stream_.data() + at;
+    const std::size_t length = kMessageHeader + load_little<std::uint16_t>(p);
+    if (length == kMessageHeader || kKinds.find(p[2]) == std::string_view::npos || !stream_.have(at + length)) return 0;
+    return ends_before_appended(at + length) ? length : 0;
+  }
+
+  /// What was appended after a crash begins where the flags say, whatever was being written when it happened.
+  [[nodiscard]] bool ends_before_appended(std::size_t end) const {
+    const auto to = stream_.offset() + static_cast<std::int64_t>(end);
+    return std::none_of(appended_.begin(), appended_.end(),
+                        [&](std::int64_t begins) { return begins > stream_.offset() && begins < to; });
+  }
+  /// On to where messages follow each other again, or what was appended begins. @return false where the log ends first
+  bool resume() {
+    const auto is_message = [&] {
+      std::size_t at = 0;
+      for (int k = 0; k < kSureAfter; ++k) {
+        if (k > 0 && stream_.offset() + static_cast<std::int64_t>(at) == stream_.size()) return true;
+        const std::size_t length = length_at(at);
+        if (length == 0) return false;
+        at += length;
+      }
+      return true;
+    };
+    const auto is_appended = [&] {
+      return std::find(appended_.begin(), appended_.end(), stream_.offset()) != appended_.end();
+    };
+    do stream_.skip(1);
+    while (stream_.have(kMessageHeader) && !is_appended() && !is_message());
+    return stream_.have(kMessageHeader);
   }
 
   void message(char kind, std::string_view content) {
     if (kind == 'D') {
-      if (content.size() > 2 && number_ != kNone && load_little<std::uint16_t>(content.data()) == number_)
+      if (content.size() > 2 && number_ && load_little<std::uint16_t>(content.data()) == *number_)
         data(content.substr(2));
     } else if (kind == 'F') {
       formats_.add(content);
@@ -202,21 +231,32 @@ class UlogReader {
       ++dropouts_;
       dropped_ms_ += load_little<std::uint16_t>(content.data());
     } else if (kind == 'B') {
-      // appended data is data as any; a logger of times to come states what one must understand to read on
-      for (std::size_t i = 8; i < std::min<std::size_t>(16, content.size()); ++i) {
-        if ((static_cast<unsigned char>(content[i]) & (i == 8 ? 0xfeU : 0xffU)) != 0)
-          throw input_error(request_.path, 0, "", "is a ULog of a newer kind: its flags are not known");
-      }
+      flags(content);
     } else if (kind == 'A' && content.size() > 3) {
       subscribe(std::to_string(static_cast<std::uint8_t>(content[0])), load_little<std::uint16_t>(content.data() + 1),
                 std::string(content.substr(3)));
     }
   }
 
+  /// Of eight bytes that one may pass over, eight that one must understand, and three offsets of what was appended.
+  void flags(std::string_view content) {
+    constexpr std::size_t kMust = 8;
+    constexpr unsigned kAppends = 1;
+    for (std::size_t i = kMust; i < std::min(kFlagBytes, content.size()); ++i) {
+      if ((static_cast<unsigned char>(content[i]) & ~(i == kMust ? kAppends : 0U)) != 0)
+        throw input_error(request_.path, 0, "", "is a ULog of a newer kind: its flags are not known");
+    }
+    for (std::size_t i = kFlagBytes; i + 8 <= content.size() && appended_.size() < kMostAppended; i += 8) {
+      const auto begins = load_little<std::uint64_t>(content.data() + i);
+      if (begins > 0 && begins < static_cast<std::uint64_t>(stream_.size()))
+        appended_.push_back(static_cast<std::int64_t>(begins));
+    }
+  }
+
   /// What the vehicle does to readings before it logs them: "float CAL_ACC0_XOFF", and its value.
   void parameter(std::string_view content) {
     const std::size_t length = content.empty() ? 0 : static_cast<unsigned char>(content[0]);
-    if (content.size() != 1 + length + 4 || own_parameters_ == kNamedTopics) return;
+    if (content.size() != 1 + length + 4) return;
     const std::string_view key = content.substr(1, length);
     const char* const value = content.data() + 1 + length;
     const std::size_t blank = key.find(' ');
@@ -228,23 +268,26 @@ class UlogReader {
     const double number = is_float ? static_cast<double>(load_little<float>(value))
                                    : static_cast<double>(load_little<std::int32_t>(value));
     const bool calibrates = name.rfind("CAL_ACC", 0) == 0 || name.rfind("CAL_GYRO", 0) == 0;
+    const bool turns = (calibrates && ends("_ROT") && number > 0.0) || (name == "SENS_BOARD_ROT" && number != 0.0);
     const bool moves = (calibrates && is_float && ends("OFF") && number != 0.0) ||
-                       (calibrates && is_float && ends("SCALE") && number != 1.0) ||
-                       (calibrates && ends("_ROT") && number > 0.0) || (name == "SENS_BOARD_ROT" && number != 0.0);
-    if (!moves) return;
+                       (calibrates && is_float && ends("SCALE") && number != 1.0);
+    if (!turns && !moves) return;
     std::array<char, 32> text{};
     std::snprintf(text.data(), text.size(), "%.4g", number);
-    own_ += (own_.empty() ? "" : ", ") + printable(name) + " = " + text.data();
-    ++own_parameters_;
+    (turns ? rotations_ : offsets_).add(name + " = " + text.data());
   }
 
   void subscribe(const std::string& instance, std::uint16_t number, const std::string& topic) {
-    topics_.emplace(topic + (instance == "0" ? "" : "#" + instance), number);
+    topics_.insert(topic + (instance == "0" ? "" : "#" + instance));
     const bool wanted = topic_.empty() ? (topic == kCombined || topic == kIntegrals) : topic == topic_;
     if (!wanted || instance != instance_) return;
     // sensor_combined where there is one: vehicle_imu is often logged at a part of its rate
-    const bool better = topic_.empty() && topic == kCombined && chosen_ == kIntegrals && intake_.samples() == 0;
-    if (number_ != kNone && !better) return;
+    const bool better = topic_.empty() && topic == kCombined && chosen_ == kIntegrals;
+    if (number_ && !better) return;
+    if (intake_.samples() > 0)
+      throw input_error_at_byte(request_.path, stream_.offset(), "",
+                                "begins sensor_combined where vehicle_imu has samples already: name one of them under "
+                                "channels: {imu: ...}, or with --channel");
     layout_ = layout_of(topic);
     number_ = number;
     chosen_ = topic;
@@ -325,16 +368,15 @@ class UlogReader {
   std::string topic_;
   std::string instance_ = "0";
   Formats formats_;
-  std::map<std::string, std::uint16_t> topics_;
-  std::uint16_t number_ = kNone;
+  std::set<std::string> topics_;
+  std::vector<std::int64_t> appended_;   // offsets in the file
+  std::optional<std::uint16_t> number_;  // of the topic that is read
   std::string chosen_;
   long long dropouts_ = 0;
   long long dropped_ms_ = 0;
-  std::string own_;
-  std::size_t own_parameters_ = 0;
+  NameList rotations_;
+  NameList offsets_;
   Layout layout_;
-  long long lost_records_ = 0;
-  long long lost_bytes_ = 0;
 };
 
 bool is_ulog(std::string_view head) { return head.substr(0, kMagic.size()) == kMagic; }

@@ -79,7 +79,7 @@ void write_whole(const std::string& path, std::string_view text) {
 }
 
 std::string read_whole(const std::string& path, std::size_t most) {
-  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (descriptor < 0) throw failed(path, "read");
   std::string text;
   struct stat status {};

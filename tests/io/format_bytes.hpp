@@ -138,10 +138,13 @@ inline std::string mcap_channel(std::uint16_t id, std::uint16_t schema, const st
   append_little(out, schema);
   return mcap_record(4, out + mcap_text(topic) + mcap_text(encoding) + std::string(4, '\0'));
 }
-inline std::string mcap_message(std::uint16_t channel, const std::string& data) {
+inline std::string mcap_message(std::uint16_t channel, const std::string& data, std::uint64_t log_time = 0) {
   std::string out;
   append_little(out, channel);
-  return mcap_record(5, out + std::string(4 + 8 + 8, '\0') + data);
+  append_little(out, std::uint32_t{0});
+  append_little(out, log_time);
+  append_little(out, log_time);
+  return mcap_record(5, out + data);
 }
 inline std::string mcap_chunk(const std::string& compression, const std::string& packed, std::uint64_t size,
                               std::uint32_t crc) {

@@ -71,6 +71,16 @@ TEST_F(LogFormats, AreToldByTheirContent) {
   EXPECT_REFUSES(ExitCode::kInput, "not a regular file", format_of("/dev/null"));
 }
 
+TEST_F(LogFormats, SayWhatAFileIsThatIsNone) {
+  for (const auto& [head, words] : {std::pair{std::string("\x1f\x8b\x08\0", 4), "gunzip"},
+                                    std::pair{std::string("#ROSBAG V2.0\n"), "rosbags-convert"},
+                                    std::pair{std::string("SQLite format 3\0", 16), "ros2 bag convert"},
+                                    std::pair{std::string("PK\x03\x04"), "zip"}}) {
+    const std::string& text = head;
+    EXPECT_REFUSES(ExitCode::kInput, words, read(text + std::string(1000, '\x42')));
+  }
+}
+
 TEST_F(LogFormats, WriteWhatTheyRead) {
   for (const LogFormat& format : log_formats()) {
     if (format.write == nullptr) continue;
@@ -174,6 +184,33 @@ TEST_F(LogFormats, MipSaysWhatItPassesOver) {
             "not both");
 }
 
+// A unit's own clock and GPS count from different days: what has not the first packet's is counted.
+TEST_F(LogFormats, MipKeepsToOneClock) {
+  std::string text;
+  for (int k = 0; k < 10; ++k) {
+    std::vector<std::string> fields = {mip_accel(kSample.f), mip_gyro(kSample.w), mip_gps_time(0xD3, 1.0 * k, 2000, 3)};
+    if (k % 2 == 1) fields.push_back(mip_reference_time(1000000LL * k));
+    text += mip_packet(fields);
+  }
+  EXPECT_EQ(read(text).note, "");
+  ASSERT_EQ(collect_->stamps.size(), 10U);
+  for (std::size_t k = 1; k < 10; ++k) EXPECT_EQ(collect_->stamps[k] - collect_->stamps[k - 1], 1000000);
+  const std::string own = mip_packet({mip_accel(kSample.f), mip_gyro(kSample.w), mip_reference_time(1)});
+  EXPECT_EQ(read(own + text).note, "5 packets of sensor data without a stamp");
+  LogRequest named;
+  named.channels.imu.name = "IMU";
+  EXPECT_REFUSES(ExitCode::kInput, "has no channel 'IMU'", read(text, named));
+}
+
+TEST_F(LogFormats, MipThatIsHalfLostIsRefused) {
+  std::string text;
+  for (int k = 0; k < 2000; ++k)
+    text += mip_packet({mip_accel(kSample.f), mip_gyro(kSample.w), mip_reference_time(1000000LL * k)});
+  std::string spoilt = text;
+  for (std::size_t i = text.size() / 4; i < text.size() / 2; ++i) spoilt[i] = static_cast<char>(i * i);
+  EXPECT_REFUSES(ExitCode::kInput, "is no packet; ", read(spoilt));
+}
+
 TEST_F(LogFormats, MipWithDamageGoesOn) {
   std::string text;
   for (int k = 0; k < 2000; ++k)
@@ -192,6 +229,8 @@ TEST_F(LogFormats, MipWithDamageGoesOn) {
 TEST_F(LogFormats, MipFieldsOfWrongLength) {
   EXPECT_REFUSES(ExitCode::kInput, "wrong length", read(mip_packet({std::string("\x0d\x04hello world", 13)})));
   EXPECT_REFUSES(ExitCode::kInput, "wrong length", read(mip_packet({std::string("\x01\x04", 2)})));
+  EXPECT_REFUSES(ExitCode::kInput, "is twice",
+                 read(mip_packet({mip_accel(kSample.f), mip_accel(kSample.f), mip_gyro(kSample.w)})));
   EXPECT_REFUSES(ExitCode::kInput, "not both", read(mip_packet({mip_accel(kSample.f), mip_reference_time(1)})));
   EXPECT_REFUSES(
       ExitCode::kInput, "is not finite",
@@ -262,8 +301,9 @@ TEST_F(LogFormats, UlogNamesTheVehiclesOwnCalibration) {
                           parameter("float CAL_GYRO0_ZOFF", 0.5F) +
                           parameter("int32_t SENS_BOARD_ROT", std::int32_t{4}) + ulog_message('F', kCombinedFormat) +
                           ulog_subscribe(0, 7, "sensor_combined") + ulog_combined(7, 1000, kSample, 0);
-  EXPECT_EQ(read(log).note,
-            "the vehicle's own CAL_ACC0_XOFF = -0.25, CAL_GYRO0_ZOFF = 0.5, SENS_BOARD_ROT = 4 are in these readings");
+  EXPECT_EQ(
+      read(log).note,
+      "the vehicle's own SENS_BOARD_ROT = 4, CAL_ACC0_XOFF = -0.25, CAL_GYRO0_ZOFF = 0.5 are in its units' readings");
 }
 
 TEST_F(LogFormats, UlogNestedAndPaddedFormats) {
@@ -309,6 +349,64 @@ TEST_F(LogFormats, UlogThatIsDamaged) {
   EXPECT_REFUSES(ExitCode::kInput, "timestamp", read(ulog_head() + endless + ulog_subscribe(0, 7, "sensor_combined")));
 }
 
+// What is lost ends where messages follow each other again, with the logger's marks or without.
+TEST_F(LogFormats, UlogFindsItsMessagesAgain) {
+  std::string log = ulog_head() + ulog_message('F', kCombinedFormat) + ulog_subscribe(0, 7, "sensor_combined");
+  std::size_t middle = 0;
+  for (int k = 0; k < 2000; ++k) {
+    if (k == 100) log += '\0';
+    if (k == 1000) middle = log.size();
+    log += ulog_combined(7, static_cast<std::uint64_t>(k), kSample, 0);
+  }
+  const LogLosses lost = read(log);
+  EXPECT_EQ(collect_->samples.size(), 2000U);
+  EXPECT_EQ(lost.records, 1);
+  EXPECT_EQ(lost.bytes, 1);
+  log.insert(middle, std::string(10000, '\xff'));
+  EXPECT_REFUSES(ExitCode::kInput, "message: is none; ", read(log));
+}
+
+TEST_F(LogFormats, UlogEndsWhereSomethingWasAppended) {
+  std::string log = ulog_head();
+  const std::string head = ulog_message('F', kCombinedFormat) + ulog_subscribe(0, 0xffff, "sensor_combined");
+  std::string data;
+  for (int k = 0; k < 20; ++k) data += ulog_combined(0xffff, static_cast<std::uint64_t>(k), kSample, 0);
+  data.resize(data.size() - 12);  // a crash within the last one
+  std::string flags(8, '\0');
+  flags += '\1' + std::string(7, '\0');
+  const std::size_t begins = log.size() + 3 + 40 + head.size() + data.size();
+  append_little(flags, static_cast<std::uint64_t>(begins));
+  flags += std::string(16, '\0');
+  log += ulog_message('B', flags) + head + data;
+  ASSERT_EQ(log.size(), begins);
+  for (int k = 0; k < 50; ++k) log += ulog_message('L', "6........what the crash was");
+  for (int k = 0; k < 200; ++k) log += ulog_message('L', std::string(60, 'x'));
+  EXPECT_EQ(read(log).records, 1);
+  EXPECT_EQ(collect_->samples.size(), 19U);
+  for (const auto& sample : collect_->samples) EXPECT_EQ(sample.f, kSample.f);
+}
+
+TEST_F(LogFormats, UlogDoesNotMixItsTopics) {
+  std::string format = "vehicle_imu:uint64_t timestamp_sample;float[3] delta_angle;float[3] delta_velocity;";
+  format += "uint16_t delta_angle_dt;uint16_t delta_velocity_dt;";
+  std::string slow;
+  append_little(slow, std::uint64_t{1});
+  for (int i = 0; i < 6; ++i) append_little(slow, 0.5F);
+  append_little(slow, std::uint16_t{5000});
+  append_little(slow, std::uint16_t{5000});
+  const std::string log = ulog_head() + ulog_message('F', kCombinedFormat) + ulog_message('F', format) +
+                          ulog_subscribe(0, 1, "vehicle_imu") + ulog_data(1, slow) +
+                          ulog_subscribe(0, 2, "sensor_combined") + ulog_combined(2, 5, kSample, 0);
+  EXPECT_REFUSES(ExitCode::kInput, "begins sensor_combined where vehicle_imu has samples already", read(log));
+  LogRequest request;
+  request.channels.imu.name = "vehicle_imu";
+  read(log, request);
+  EXPECT_THAT(collect_->stamps, ElementsAre(1));
+  request.channels.imu.name = "sensor_combined";
+  read(log, request);
+  EXPECT_THAT(collect_->stamps, ElementsAre(5));
+}
+
 // --- MCAP
 
 TEST_F(LogFormats, McapOfRos1AndRos2) {
@@ -334,7 +432,7 @@ std::string compressed(const std::string& how, const std::string& records) {
 TEST_F(LogFormats, McapInCompressedChunks) {
   const std::string channel = mcap_schema(1, "sensor_msgs/msg/Imu") + mcap_channel(1, 1, "/imu", "cdr");
   std::string records = channel;
-  for (std::uint32_t k = 0; k < 500; ++k) records += mcap_message(1, cdr_imu(k, 0, kSample));
+  for (std::uint32_t k = 1; k <= 500; ++k) records += mcap_message(1, cdr_imu(k, 0, kSample));
   const std::uint32_t crc = crc_of(records);
   for (const char* how : {"zstd", "lz4"}) {
     SCOPED_TRACE(how);
@@ -352,13 +450,16 @@ TEST_F(LogFormats, McapInCompressedChunks) {
       const auto& text = wrong;
       EXPECT_REFUSES(ExitCode::kInput, what, read(mcap_head() + text + mcap_end()));
     }
-    // what is damaged is passed over where there is enough else
-    const std::string two =
-        mcap_chunk(how, packed, records.size(), crc) + mcap_chunk(how, packed, records.size(), crc ^ 1U);
-    const LogLosses lost = read(mcap_head() + two + mcap_end());
+    // what is damaged is passed over where there is a hundred times as much else
+    const std::string whole = mcap_chunk(how, packed, records.size(), crc);
+    const std::string wrong = mcap_chunk(how, packed, records.size(), crc ^ 1U);
+    std::string hundred;
+    for (int k = 0; k < 110; ++k) hundred += whole;
+    const LogLosses lost = read(mcap_head() + hundred + wrong + mcap_end());
     EXPECT_EQ(lost.records, 1);
     EXPECT_THAT(lost.note, testing::HasSubstr("chunk: does not have its checksum"));
-    EXPECT_EQ(collect_->samples.size(), 500U);
+    EXPECT_EQ(collect_->samples.size(), 110U * 500U);
+    EXPECT_REFUSES(ExitCode::kInput, "bytes cannot be read", read(mcap_head() + whole + wrong + mcap_end()));
   }
   EXPECT_REFUSES(ExitCode::kInput, "zstd and lz4 are read",
                  read(mcap_head() + mcap_chunk("brotli", records, records.size(), crc) + mcap_end()));
@@ -408,7 +509,31 @@ TEST_F(LogFormats, McapWithSeveralTopics) {
   b.channels.imu.name = "/camera";
   EXPECT_REFUSES(ExitCode::kInput, "is of type sensor_msgs/msg/Image in cdr, not sensor_msgs/msg/Imu", read(log, b));
   b.channels.imu.name = "/none";
-  EXPECT_REFUSES(ExitCode::kInput, "it has topics /camera (sensor_msgs/msg/Image), /imu/a", read(log + mcap_end(), b));
+  EXPECT_REFUSES(ExitCode::kInput,
+                 "it has topics /imu/a (sensor_msgs/msg/Imu), /joint_states (sensor_msgs/msg/JointState), /camera",
+                 read(log + mcap_end(), b));
+}
+
+TEST_F(LogFormats, McapWhoseChunksOverlapIsToBeSorted) {
+  const std::string channel = mcap_schema(1, "sensor_msgs/msg/Imu") + mcap_channel(1, 1, "/imu", "cdr");
+  const auto chunk = [&](std::uint32_t from, std::uint32_t step) {
+    std::string records = channel;
+    for (std::uint32_t k = 0; k < 50; ++k) {
+      const std::uint32_t at = from + step * k;
+      records += mcap_message(1, cdr_imu(at, 0, kSample), 1000000000ULL * at);
+    }
+    return mcap_chunk("", records, records.size(), 0);
+  };
+  EXPECT_REFUSES(ExitCode::kInput, "/imu: goes back within the time of the chunk before: sort",
+                 read(mcap_head() + chunk(100, 2) + chunk(101, 2) + mcap_end()));
+  read(mcap_head() + chunk(100, 1) + chunk(150, 1) + chunk(1, 1) + mcap_end());  // a clock that was reset
+  EXPECT_EQ(collect_->samples.size(), 150U);
+}
+
+// Texts are let in before anything is known of them: a chunk of 17 KB can hold a name of 256 MiB.
+TEST_F(LogFormats, McapNamesAreOfALengthThatNamesHave) {
+  EXPECT_REFUSES(ExitCode::kInput, "schema: has no name",
+                 read(mcap_head() + mcap_schema(1, std::string(2000, 'n')) + mcap_end()));
 }
 
 TEST_F(LogFormats, McapMessagesThatAreNone) {
@@ -487,6 +612,38 @@ TEST_F(LogFormats, TablesOfOtherProgramsGoneWrong) {
                       "2018-01-02 10:11:12.5,1,2,3,4,5,6\n"));
   EXPECT_REFUSES(ExitCode::kInput, "a.log:3: t: no such column",
                  read("// Update Rate: 100.0Hz\n// x\nPacketCounter\tGyr_X\n1\t2\n"));
+}
+
+TEST_F(LogFormats, TablesOfTwoInstruments) {
+  const std::string row = "5000,1,1,1,0.25,-0.5,0.125,1.5,-2.25,9.75\n";
+  const std::string of_b = "B:scaledGyroX,B:scaledGyroY,B:scaledGyroZ,B:scaledAccelX,B:scaledAccelY,B:scaledAccelZ";
+  read("Time,A:scaledAccelX,A:scaledAccelY,A:scaledAccelZ," + of_b + "\n" + row);
+  ASSERT_EQ(collect_->samples.size(), 1U);
+  EXPECT_LT((collect_->samples[0].f - kStandardGravity * kSample.f).norm(), 1e-12) << "not A's beside B's";
+  std::string of_a = of_b;
+  for (char& c : of_a) c = c == 'B' ? 'A' : c;
+  EXPECT_REFUSES(ExitCode::kInput, "B:scaledGyroX: is there of 'A:' too",
+                 read("Time," + of_a + "," + of_b + "\n5000,1,2,3,4,5,6,1,2,3,4,5,6\n"));
+}
+
+TEST_F(LogFormats, TablesThatCannotBeUnderstood) {
+  const std::string ours = "t_s,gyro_x_rad_s,gyro_y_rad_s,gyro_z_rad_s,accel_x_m_s2,accel_y_m_s2,accel_z_m_s2";
+  EXPECT_REFUSES(ExitCode::kInput, "gyro_x: is there twice, as 'gyro_x_rad_s' and 'gyro_x_deg_s'",
+                 read(ours + ",gyro_x_deg_s\n1,2,3,4,5,6,7,8\n"));
+  EXPECT_REFUSES(ExitCode::kInput, "or map one of its own under columns: in a run file: time, gx",
+                 read("time,gx\n1,2\n"));
+  EXPECT_REFUSES(ExitCode::kInput, "the file has no header; map its columns by index", read("1,2,3\n"));
+  read(ours + "\n1,2,3,4,5,6,7\n   \n\t\r\n# a remark\n2,2,3,4,5,6,7\n  ");
+  EXPECT_EQ(collect_->samples.size(), 2U);
+}
+
+TEST_F(LogFormats, TablesBeforeGpsTimeIsKnown) {
+  const std::string header =
+      "GPS Week,GPS TOW,X Gyro [x8005],Y Gyro [x8005],Z Gyro [x8005],X Accel [x8004],Y Accel [x8004],Z Accel "
+      "[x8004]\n";
+  EXPECT_EQ(read(header + "0,10,1,2,3,4,5,6\n2000,20,1,2,3,4,5,6\n").note,
+            "1 rows of GPS week 0, before the time was known, are left out");
+  EXPECT_EQ(collect_->samples.size(), 1U);
 }
 
 TEST_F(LogFormats, CountersThatWrap) {

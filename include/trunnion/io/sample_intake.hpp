@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the trunnion authors
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// What every reader does with a sample, whatever it read it from: refuses what is no number, counts what is beyond any
-/// sensor as damage, and says in the end whether there was too much of it.
+/// What readers of binary logs do with a sample: refuse what is no number, count what is beyond any sensor as damage,
+/// and say in the end whether there was too much of it. A table, which people write, is refused at once, by its line.
 
 #pragma once
 
@@ -70,8 +70,19 @@ class SampleIntake {
     damaged_bytes_ += static_cast<long long>(bytes);
   }
 
-  /// Call after the last. @throws Error, the first fault, when more than one in a thousand is damaged
-  void finish() const {
+  /// A stretch of bytes within a log that no record could be read from; a log that was cut has none at its end.
+  void lose(std::int64_t bytes, const Error& fault) {
+    if (!first_loss_) first_loss_ = fault;
+    ++lost_stretches_;
+    lost_bytes_ += bytes;
+  }
+
+  /// Call after the last. @param bytes of the log, where lose() was told of it
+  /// @throws Error, the first, when more than one record in a thousand is damaged, or one byte in a hundred lost
+  void finish(std::int64_t bytes = 0) const {
+    if (first_loss_ && static_cast<double>(lost_bytes_) > kTolerableLoss * static_cast<double>(bytes))
+      throw Error(first_loss_->code(), std::string(first_loss_->what()) + "; " + std::to_string(lost_bytes_) + " of " +
+                                           std::to_string(bytes) + " bytes cannot be read");
     const auto whole = static_cast<double>(samples_ + encoders_);
     if (first_fault_ && static_cast<double>(damaged_records_) > kTolerableDamage * whole) throw *first_fault_;
   }
@@ -80,11 +91,16 @@ class SampleIntake {
   [[nodiscard]] long long encoders() const { return encoders_; }
   [[nodiscard]] long long damaged_records() const { return damaged_records_; }
   [[nodiscard]] long long damaged_bytes() const { return damaged_bytes_; }
+  [[nodiscard]] long long lost_stretches() const { return lost_stretches_; }
+  [[nodiscard]] std::int64_t lost_bytes() const { return lost_bytes_; }
+  /// Where the first stretch was lost, and why; empty where none was.
+  [[nodiscard]] std::string first_loss() const { return first_loss_ ? first_loss_->what() : std::string(); }
   /// What is wrong with the first that is damaged; empty where none is.
   [[nodiscard]] std::string first_fault() const { return first_fault_ ? first_fault_->what() : std::string(); }
 
  private:
   static constexpr double kTolerableDamage = 1e-3;  // what cannot be used, against what can
+  static constexpr double kTolerableLoss = 0.01;    // of the bytes
   static constexpr double kLargestAngle = 1e7;      // rad
   static constexpr double kColdest = -273.15;       // degC
   static constexpr double kHottest = 1000.0;
@@ -95,7 +111,10 @@ class SampleIntake {
   long long encoders_ = 0;
   long long damaged_records_ = 0;
   long long damaged_bytes_ = 0;
+  long long lost_stretches_ = 0;
+  std::int64_t lost_bytes_ = 0;
   std::optional<Error> first_fault_;
+  std::optional<Error> first_loss_;
 };
 
 }  // namespace trunnion::io
