@@ -5,10 +5,15 @@
 # trunnion (commands) and libtrunnion-dev (headers, libraries, CMake package).
 
 find_program(HELP2MAN_EXECUTABLE help2man)
-if(TRUNNION_BUILD_APPS AND HELP2MAN_EXECUTABLE)
+if(TRUNNION_BUILD_APPS)
   set(pages)
   foreach(app imu_calibrate imu_correct imu_live imu_navigate imu_replay gnss_attitude)
     if(NOT TARGET ${app})
+      continue()
+    endif()
+    install(FILES ${PROJECT_SOURCE_DIR}/cmake/package/completion.bash RENAME ${app}
+      DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT tools)
+    if(NOT HELP2MAN_EXECUTABLE)
       continue()
     endif()
     set(page ${PROJECT_BINARY_DIR}/man/${app}.1)
@@ -16,11 +21,11 @@ if(TRUNNION_BUILD_APPS AND HELP2MAN_EXECUTABLE)
       COMMAND ${PROJECT_SOURCE_DIR}/cmake/package/man_pages ${HELP2MAN_EXECUTABLE} $<TARGET_FILE:${app}> ${PROJECT_BINARY_DIR}/man
       DEPENDS ${app} ${PROJECT_SOURCE_DIR}/cmake/package/man_pages VERBATIM)
     list(APPEND pages ${page})
-    install(FILES ${PROJECT_SOURCE_DIR}/cmake/package/completion.bash RENAME ${app}
-      DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT tools)
   endforeach()
-  add_custom_target(man ALL DEPENDS ${pages})
-  install(DIRECTORY ${PROJECT_BINARY_DIR}/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT tools)
+  if(pages)
+    add_custom_target(man ALL DEPENDS ${pages})
+    install(DIRECTORY ${PROJECT_BINARY_DIR}/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT tools)
+  endif()
 endif()
 
 foreach(package trunnion=tools libtrunnion-dev=dev)

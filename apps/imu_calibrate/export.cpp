@@ -372,20 +372,23 @@ void add_export(CLI::App& app, ExitCode& exit_code) {
                                 "Other programs: at which the size of what they cannot say is stated")
                    ->capture_default_str()
                    ->check(CLI::PositiveNumber);
-  auto* gyro_id = command->add_option("--gyro-id", o->target.gyro_id, "px4: of the gyros, CAL_GYRO0_ID")
-                      ->check(CLI::Range(1LL, 2147483647LL));
-  auto* accel_id = command->add_option("--accel-id", o->target.accel_id, "px4: of the accelerometers, CAL_ACC0_ID")
+  auto* gyro_id =
+      command->add_option("--gyro-id", o->target.gyro_id, "px4, ardupilot: of the gyros, CAL_GYRO0_ID or INS_GYR_ID")
+          ->check(CLI::Range(1LL, 2147483647LL));
+  auto* accel_id = command
+                       ->add_option("--accel-id", o->target.accel_id,
+                                    "px4, ardupilot: of the accelerometers, CAL_ACC0_ID or INS_ACC_ID")
                        ->check(CLI::Range(1LL, 2147483647LL));
   command->footer(
       "Example:\n  imu_calibrate export calibration.yaml --format kalibr -o imu.yaml\n  imu_calibrate export "
       "calibration.yaml --sheet sheet.yaml --bits 16 -o calibration.hpp --block "
       "calibration.bin");
   const std::vector<CLI::Option*> of_c = {block, bits, fraction, float_only, name};
-  const std::vector<CLI::Option*> of_px4 = {gyro_id, accel_id};
   auto* instance =
       command->add_option("--instance", o->target.instance, "px4, ardupilot: which of the vehicle's units, from 0")
           ->check(CLI::Range(0, 2));
-  command->callback([o, of_c, of_px4, rate, instance, &exit_code] {
+  const std::vector<CLI::Option*> of_vehicles = {gyro_id, accel_id, instance};
+  command->callback([o, of_c, of_vehicles, rate, &exit_code] {
     const auto refuse = [&](const CLI::Option* option, const char* owner) {
       if (option->count() > 0) throw Error(ExitCode::kUsage, option->get_name() + " is for --format " + owner);
     };
@@ -394,10 +397,9 @@ void add_export(CLI::App& app, ExitCode& exit_code) {
     } else {
       for (const CLI::Option* option : of_c) refuse(option, "c");
     }
-    if (o->format != "px4") {
-      for (const CLI::Option* option : of_px4) refuse(option, "px4");
+    if (o->format != "px4" && o->format != "ardupilot") {
+      for (const CLI::Option* option : of_vehicles) refuse(option, "px4 or ardupilot");
     }
-    if (o->format != "px4" && o->format != "ardupilot") refuse(instance, "px4 or ardupilot");
     if (o->format == "c") {
       export_calibration(*o);
     } else {

@@ -77,7 +77,7 @@ void export_to_target(const TargetOptions& o) {
   io::write_whole(o.output, exported.text);
   std::printf("%s: %s\n", o.output.c_str(), format.title);
   for (const std::string& word : words) std::fprintf(stderr, "%s\n", word.c_str());
-  const InertialSample<double> all = io::departure(request.unit, exported, rate);
+  const InertialSample<double> all = io::departure(format, request, rate);
   if (all.w.maxCoeff() > 1e-6 * rate || all.f.maxCoeff() > 1e-6)
     std::fprintf(stderr, "In all its readings are off by up to %s%s%s\n", sizes(all).c_str(), at.c_str(),
                  request.unit.thermal.order() > 0 ? " and the reference temperature" : "");

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // PX4 and ArduPilot: corrected f = (measured f - offset) scale, axis by axis, corrected w = measured w - offset; single
-// precision, in the axes of the sensor, before it is turned into those of the board.
+// precision, in the axes of the board that the sensor is on: after the driver has turned the chip's, before what turns
+// the board's into those of the vehicle (PX4: CAL_*_ROT and SENS_BOARD_ROT; ArduPilot: AHRS_ORIENTATION).
 
 #include <Eigen/LU>
 #include <cmath>
@@ -41,8 +42,8 @@ Exported exported(const ExportRequest& request, const Parameters& p) {
     return InertialSample<double>{y.w - p.gyro_offset, (y.f - p.accel_offset).cwiseProduct(p.accel_scale)};
   };
   out.advice.emplace_back(
-      "it holds for readings in the sensor's own axes, as the driver gives them: those of a log have the vehicle's "
-      "offsets, scales and rotations in them, unless they were 0, 1 and none");
+      "it holds for readings as the vehicle corrects them, after the driver's turn of the chip's axes and before the "
+      "board's: those of a log have its offsets, scales and rotations in them, unless they were 0, 1 and none");
   return out;
 }
 
@@ -64,6 +65,12 @@ Exported px4(const ExportRequest& request) {
   for (int i = 0; i < 3; ++i) line(accel + "_" + kAxes[i] + "OFF", nine_digits(p.accel_offset(i)), "9");
   for (int i = 0; i < 3; ++i) line(accel + "_" + kAxes[i] + "SCALE", nine_digits(p.accel_scale(i)), "9");
   for (int i = 0; i < 3; ++i) line(gyro + "_" + kAxes[i] + "OFF", nine_digits(p.gyro_offset(i)), "9");
+  out.text += "# what is calibrated is not estimated or measured anew by the vehicle\n";
+  line("SENS_IMU_AUTOCAL", "0", "6");
+  line("IMU_GYRO_CAL_EN", "0", "6");
+  out.advice.emplace_back(
+      "SENS_IMU_AUTOCAL and IMU_GYRO_CAL_EN are 0 in the file: the vehicle would put its own estimates over these "
+      "offsets");
   out.advice.emplace_back("restart the vehicle after loading: several versions pass over a change below 0.01");
   return out;
 }
@@ -74,11 +81,16 @@ Exported ardupilot(const ExportRequest& request) {
   const auto line = [&](const std::string& name, double value) { out.text += name + "," + nine_digits(value) + "\n"; };
   const std::string which = request.instance == 0 ? "" : std::to_string(request.instance + 1);
   const std::string accel = "INS_ACC" + which;
-  const std::string gyro = which.empty() ? "INS_GYROFFS_" : "INS_GYR" + which + "OFFS_";
+  const std::string gyro = "INS_GYR" + which;
+  if (request.accel_id != 0) out.text += accel + "_ID," + std::to_string(request.accel_id) + "\n";
+  if (request.gyro_id != 0) out.text += gyro + "_ID," + std::to_string(request.gyro_id) + "\n";
+  if (request.accel_id == 0 || request.gyro_id == 0)
+    out.advice.emplace_back("ArduPilot takes offsets for the device whose id " + accel + "_ID and " + gyro +
+                            "_ID hold: state --accel-id and --gyro-id, or calibrate the vehicle once before");
   constexpr const char* kAxes = "XYZ";
   for (int i = 0; i < 3; ++i) line(accel + "OFFS_" + kAxes[i], p.accel_offset(i));
   for (int i = 0; i < 3; ++i) line(accel + "SCAL_" + kAxes[i], p.accel_scale(i));
-  for (int i = 0; i < 3; ++i) line(gyro + kAxes[i], p.gyro_offset(i));
+  for (int i = 0; i < 3; ++i) line(gyro + "OFFS_" + kAxes[i], p.gyro_offset(i));
   out.text += "# the offsets of the gyros are not measured anew at every start\n";
   line("INS_GYR_CAL", 0.0);
   out.advice.emplace_back(
@@ -91,7 +103,8 @@ Exported ardupilot(const ExportRequest& request) {
 
 }  // namespace
 
-const ExportFormat kPx4Export = {"px4", "PX4 parameters", ".params", kSingle, false, false, px4};
-const ExportFormat kArduPilotExport = {"ardupilot", "ArduPilot parameters", ".param", kSingle, false, false, ardupilot};
+const ExportFormat kPx4Export = {"px4", "PX4 parameters", ".params", kSingle, false, false, true, px4};
+const ExportFormat kArduPilotExport = {"ardupilot", "ArduPilot parameters", ".param", kSingle, false, false, true,
+                                       ardupilot};
 
 }  // namespace trunnion::io

@@ -7,6 +7,9 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
+
+#include <Eigen/LU>
 
 #include "export_formats.hpp"
 #include "trunnion/core/error.hpp"
@@ -71,7 +74,7 @@ const std::vector<Term>& terms() {
 }
 
 /// Over the range of the calibration, or ten kelvins from its reference where it states none.
-InertialSample<double> size_of_temperature(const Unit& unit, double rate) {
+Omission temperature_of(const Unit& unit, double rate) {
   InertialSample<double> size;
   const auto& thermal = unit.thermal;
   const bool bounded = std::isfinite(thermal.lowest) && std::isfinite(thermal.highest);
@@ -85,7 +88,9 @@ InertialSample<double> size_of_temperature(const Unit& unit, double rate) {
     size = larger(size, {bias.w.cwiseAbs() + rate * scale.w.cwiseAbs(),
                          bias.f.cwiseAbs() + kStandardGravity * scale.f.cwiseAbs()});
   }
-  return size;
+  std::array<char, 64> span{};
+  std::snprintf(span.data(), span.size(), "temperature, from %.4g to %.4g degC", from, to);
+  return {span.data(), size};
 }
 
 InertialSample<double> size_of_places(const Unit& unit, double rate) {
@@ -93,6 +98,18 @@ InertialSample<double> size_of_places(const Unit& unit, double rate) {
   for (const Vec3<double>& d : directions())
     size = larger(size, {Vec3<double>::Zero(), unit.size_effect(rate * d, Vec3<double>::Zero())});
   return size;
+}
+
+InertialSample<double> departure_of(const Unit& unit, const Exported& exported, double rate) {
+  InertialSample<double> most;
+  for (const Vec3<double>& axis : directions()) {
+    for (const Vec3<double>& up : directions()) {
+      const InertialSample<double> input{rate * axis, kStandardGravity * up};
+      const InertialSample<double> target = exported.correct(unit.distort(input));
+      most = larger(most, {target.w - exported.C_tb * input.w, target.f - exported.C_tb * input.f});
+    }
+  }
+  return most;
 }
 
 }  // namespace
@@ -112,15 +129,9 @@ const ExportFormat& export_format(const std::string& name) {
   throw Error(ExitCode::kUsage, "no export '" + name + "'; there are " + known);
 }
 
-InertialSample<double> departure(const Unit& unit, const Exported& exported, double rate) {
-  InertialSample<double> most;
-  for (const Vec3<double>& axis : directions()) {
-    for (const Vec3<double>& up : directions()) {
-      const InertialSample<double> input{rate * axis, kStandardGravity * up};
-      const InertialSample<double> target = exported.correct(unit.distort(input));
-      most = larger(most, {target.w - exported.C_tb * input.w, target.f - exported.C_tb * input.f});
-    }
-  }
+InertialSample<double> departure(const ExportFormat& format, const ExportRequest& request, double rate) {
+  InertialSample<double> most = departure_of(request.unit, format.make(request), rate);
+  if (!format.holds_places) most.f += size_of_places(request.unit, rate).f;
   return most;
 }
 
@@ -131,17 +142,32 @@ std::vector<Omission> omissions(const ExportFormat& format, const ExportRequest&
   for (const Term& term : terms()) {
     one.unit = Unit();
     term.keep(request.unit, one.unit);
-    const InertialSample<double> size = departure(one.unit, format.make(one), rate);
+    const InertialSample<double> size = departure_of(one.unit, format.make(one), rate);
     const double rounding = 4.0 * format.precision;
     if (counts(size.w.maxCoeff() - rounding * rate, rate) ||
         counts(size.f.maxCoeff() - rounding * kStandardGravity, 10.0))
       all.push_back({term.name, size});
   }
-  if (request.unit.thermal.order() > 0 && !format.holds_temperature)
-    all.push_back({"temperature", size_of_temperature(request.unit, rate)});
+  if (request.unit.thermal.order() > 0 && !format.holds_temperature) all.push_back(temperature_of(request.unit, rate));
+  const InertialSample<double> bias{request.unit.gyro.bias.cwiseAbs(), request.unit.accel.bias.cwiseAbs()};
+  if (!format.holds_biases && bias.w.norm() + bias.f.norm() > 0.0)
+    all.push_back({"turn-on biases, which its reader estimates itself", bias});
   if (!request.unit.accel_place.isZero(0.0) && !format.holds_places)
     all.push_back({"size effect", size_of_places(request.unit, rate)});
   return all;
+}
+
+InertialSample<double> corrected_in_steps(const Unit& unit, const InertialSample<double>& reading, int steps) {
+  const auto straight = [steps](const Triad<double>& triad, const Vec3<double>& linear) {
+    const Mat3<double> inverse = triad.matrix().inverse();
+    Vec3<double> u = inverse * linear;
+    for (int step = 0; step < steps; ++step) u = inverse * (linear - triad.nonlinearity(u));
+    return u;
+  };
+  InertialSample<double> input;
+  input.f = straight(unit.accel, reading.f - unit.accel.bias);
+  input.w = straight(unit.gyro, reading.w - unit.gyro.bias - unit.g_sensitivity * input.f);
+  return input;
 }
 
 std::string exactly(double value) {

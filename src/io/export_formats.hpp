@@ -20,6 +20,14 @@ extern const ExportFormat kVectorNavExport;
 extern const ExportFormat kMatlabExport;
 extern const ExportFormat kJsonExport;
 
+/// Steps of the fixed-point iteration in files that hold nonlinearity: to the last digit where it is a hundredth of
+/// full scale.
+inline constexpr int kExportedSteps = 8;
+
+/// Eq. (5) by so many steps u <- A^-1 (y - b - n(u)), at the reference temperature.
+InertialSample<double> corrected_in_steps(const InertialUnit<double>& unit, const InertialSample<double>& reading,
+                                          int steps);
+
 /// The shortest text that reads back to the same double, with a point: YAML 1.1 takes 3e-06 for a word.
 std::string exactly(double value);
 /// "a, b, c", by rows.

@@ -36,7 +36,7 @@ Exported json(const ExportRequest& request) {
   tree["units"] = "rad/s, m/s^2, degC, m";
   tree["equations"] = {
       "f = A_a^-1 (y_a - b_a - n_a(f))", "w = A_g^-1 (y_g - b_g - H f - n_g(w))",
-      "n(u) = |u| asymmetry / 2 + u^2 quadratic + u^3 cubic, by axis; two steps of the fixed-point iteration suffice",
+      "n(u) = |u| asymmetry / 2 + u^2 quadratic + u^3 cubic, by axis; u <- A^-1 (y - b - n(u)) eight times, from n = 0",
       "at T: b + sum bias[k] t^k and A + diag(sum scale[k] t^k), k from 1, t = clamp(T, lowest, highest) - reference"};
   tree["gyroscope"] = triad(unit.gyro);
   tree["accelerometer"] = triad(unit.accel);
@@ -56,16 +56,19 @@ Exported json(const ExportRequest& request) {
       t["accelerometer_scale"].push_back(list(thermal.scale[i].f));
     }
   }
-  if (!unit.accel_place.isZero(0.0)) tree["accelerometer"]["place"] = rows(unit.accel_place.transpose());
+  if (!unit.accel_place.isZero(0.0)) {
+    tree["accelerometer"]["place"] = rows(unit.accel_place.transpose());
+    tree["equations"].push_back(
+        "first, with place r_i [m] of accelerometer i: y_a_i - row i of A_a (w' x r_i + w x (w x r_i))");
+  }
   Exported out;
   out.text = tree.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-  const UnitCorrection<double> correction(unit);
-  out.correct = [correction](const InertialSample<double>& y) { return correction.correct(y); };
+  out.correct = [unit](const InertialSample<double>& y) { return corrected_in_steps(unit, y, kExportedSteps); };
   return out;
 }
 
 }  // namespace
 
-const ExportFormat kJsonExport = {"json", "JSON with equations and inverses", ".json", 1e-9, true, true, json};
+const ExportFormat kJsonExport = {"json", "JSON with equations and inverses", ".json", 1e-9, true, true, true, json};
 
 }  // namespace trunnion::io

@@ -51,11 +51,11 @@ std::string common(const ExportRequest& request, std::vector<std::string>& advic
   if (request.sheet.has_noise && !(request.sheet.rate_hz > 0.0))
     advice.emplace_back("the sheet states no rate_hz: the file has no update_rate, which its reader wants");
   if (request.sheet.rate_hz > 0.0) text += "  update_rate: " + exactly(request.sheet.rate_hz) + "\n";
-  return text + "  rostopic: /imu0\n  time_offset: 0.0\n";
+  return text + "  rostopic: /imu0  # state yours\n  time_offset: 0.0\n";
 }
 
 std::string biases(const ExportRequest& request) {
-  return "# Turn-on biases of the calibration, to be subtracted first; the reader has no place for them:\n"
+  return "# Turn-on biases of the calibration; the reader has no place for them, and estimates its own:\n"
          "#   gyro [rad/s]: [" +
          listed(request.unit.gyro.bias) + "]\n#   accelerometer [m/s^2]: [" + listed(request.unit.accel.bias) + "]\n";
 }
@@ -108,9 +108,9 @@ Exported openvins(const ExportRequest& request) {
 
 }  // namespace
 
-const ExportFormat kKalibrExport = {"kalibr", "Kalibr's IMU file, scale-misalignment", ".yaml", kDouble, false, false,
-                                    kalibr};
-const ExportFormat kOpenVinsExport = {"openvins", "OpenVINS' kalibr_imu_chain.yaml", ".yaml", kDouble, false, false,
-                                      openvins};
+const ExportFormat kKalibrExport = {
+    "kalibr", "Kalibr's IMU file, scale-misalignment", ".yaml", kDouble, false, false, false, kalibr};
+const ExportFormat kOpenVinsExport = {
+    "openvins", "OpenVINS' kalibr_imu_chain.yaml", ".yaml", kDouble, false, false, false, openvins};
 
 }  // namespace trunnion::io

@@ -73,17 +73,18 @@ Exported matlab(const ExportRequest& request) {
       "% a fixed-point iteration over n(u) and the scale that moves\n"
       "linear = y - triad.bias;\n"
       "u = linear / triad.matrix';\n"
-      "for step = 1:8\n"
+      "for step = 1:" +
+      std::to_string(kExportedSteps) +
+      "\n"
       "  n = abs(u) .* triad.asymmetry / 2 + u.^2 .* triad.quadratic + u.^3 .* triad.cubic;\n"
       "  u = (linear - n - scale .* u) / triad.matrix';\n"
       "end\nend\n";
-  const UnitCorrection<double> correction(unit);
-  out.correct = [correction](const InertialSample<double>& y) { return correction.correct(y); };
+  out.correct = [unit](const InertialSample<double>& y) { return corrected_in_steps(unit, y, kExportedSteps); };
   return out;
 }
 
 }  // namespace
 
-const ExportFormat kMatlabExport = {"matlab", "function of MATLAB and Octave", ".m", 1e-9, true, false, matlab};
+const ExportFormat kMatlabExport = {"matlab", "function of MATLAB and Octave", ".m", 1e-9, true, false, true, matlab};
 
 }  // namespace trunnion::io

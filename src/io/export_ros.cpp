@@ -24,6 +24,6 @@ Exported ros(const ExportRequest& request) {
 
 }  // namespace
 
-const ExportFormat kRosExport = {"ros", "ROS imu_calib.yaml", ".yaml", 1e-15, false, false, ros};
+const ExportFormat kRosExport = {"ros", "ROS imu_calib.yaml", ".yaml", 1e-15, false, false, true, ros};
 
 }  // namespace trunnion::io

@@ -62,7 +62,7 @@ Exported vectornav(const ExportRequest& request) {
 
 }  // namespace
 
-const ExportFormat kVectorNavExport = {"vectornav", "VectorNav registers 25 and 84", ".txt", 6e-8, false, false,
+const ExportFormat kVectorNavExport = {"vectornav", "VectorNav registers 25 and 84", ".txt", 6e-8, false, false, true,
                                        vectornav};
 
 }  // namespace trunnion::io

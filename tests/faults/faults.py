@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 the trunnion authors
 # SPDX-License-Identifier: BSD-3-Clause
 """faults.py <folder of the commands> <shim> <kills> [live]: every write, sync, rename and read of solve, apply, convert and export
-fails once; everything dribbles; and the commands are killed at random moments. An output is there whole, as without the
-fault, or it is not there. With live (in a network of its own, see tests/apps/isolated): imu_live is killed while it
-records, and what was in its journal once is in its recording in the end."""
+fails once, sixty of a kind where there are more; everything dribbles; and the commands are killed at random moments. An output is there whole, as without the
+fault, or it is not there. With live (in a network of its own, see tests/apps/isolated): imu_live finds the disk
+full, and is killed while it records, and what was in its journal once is in its recording in the end."""
 
 import os
 import random
@@ -80,14 +80,18 @@ def killed(name, arguments, output, reference, times):
     subprocess.run(arguments, capture_output=True, check=True)
     duration = time.perf_counter() - begin
     whole = 0
-    for _ in range(times):
+    for turn in range(times):
         if os.path.exists(output):
             os.remove(output)
+        if turn % 2 == 1:  # one of before, that stays until the new one is whole
+            with open(output, "wb") as file:
+                file.write(b"of before")
         process = subprocess.Popen(arguments, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         time.sleep(random.uniform(0.0, 1.1 * duration))
         process.kill()
         process.wait()
-        if os.path.exists(output):
+        hold(turn % 2 == 0 or os.path.exists(output), f"{name}, killed: the output of before is gone")
+        if os.path.exists(output) and content(output) != b"of before":
             whole += 1
             hold(content(output) == reference, f"{name}, killed: the output is not whole")
         for path in left_over("."):
@@ -107,12 +111,46 @@ def records(data):
     return at, count
 
 
+def live_folder(name):
+    os.mkdir(name)
+    for file in ("run.yaml", "rig.urdf", "sheet.yaml"):
+        with open(f"{name}/{file}", "wb") as out:
+            out.write(content(f"table/{file}"))
+
+
+def full_live(times):
+    """The disk is full from a write on, whichever it is: a word, exit 3, and every record before it is there, and stays."""
+    live_folder("full")
+    log = "full/position_1.lcm"
+    listen = command("imu_live", "full/run.yaml", "--unattended", "--silence-s", "3", "--port", "0", "-o", "full/calibration.yaml")
+    play = command("imu_replay", "table/position_1.lcm", "--speed", "40", "--end", "120")
+    kept, fullest = b"", 0
+    for number in sorted(random.sample(range(1, 40), times)):
+        environment = {**os.environ, "LD_PRELOAD": shim, "TRUNNION_FAULT": f"full {number}"}
+        session = subprocess.Popen(listen, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        time.sleep(1.0)
+        replay = subprocess.Popen(play, **QUIET)
+        try:
+            _, words = session.communicate(timeout=60)
+        except subprocess.TimeoutExpired:
+            session.send_signal(signal.SIGINT)
+            _, words = session.communicate()
+        replay.kill()
+        replay.wait()
+        at = f"imu_live, disk full from write {number}"
+        hold(session.returncode == 3 and "No space left" in words, f"{at}: exit {session.returncode}: {words[-200:]}")
+        data = content(log + ".part") if os.path.exists(log + ".part") else b""
+        whole = data[: records(data)[0]]
+        hold(whole.startswith(kept), f"{at}: what had been recorded is lost")
+        hold(not os.path.exists(log) and not os.path.exists("full/calibration.yaml"), f"{at}: an output is there")
+        kept, fullest = whole, max(fullest, records(whole)[1])
+    hold(fullest > 0, "imu_live, full disks: nothing was recorded before any")
+    print(f"[ FIGURE   ] imu_live: {times} disks full at a write of it; {fullest} records before stay, no output half-written")
+
+
 def killed_live(times):
     """Recording goes on over many deaths; what was in the journal at one of them is in the recording."""
-    os.mkdir("live")
-    for file in ("run.yaml", "rig.urdf", "sheet.yaml"):
-        with open(f"live/{file}", "wb") as out:
-            out.write(content(f"table/{file}"))
+    live_folder("live")
     deaths = mount = 0
     while deaths < times and mount < 3:
         mount += 1
@@ -151,6 +189,7 @@ with tempfile.TemporaryDirectory() as folder:
     os.chdir(folder)
     subprocess.run(command("imu_calibrate", "simulate", "--seed", "7", "-o", "table"), capture_output=True, check=True)
     if live:
+        full_live(20)
         killed_live(kills)
     else:
         subprocess.run(command("imu_calibrate", "solve", "table/run.yaml", "-o", "calibration.yaml"), capture_output=True, check=True)

@@ -3,8 +3,10 @@
 //
 // Preloaded, it makes the calls of a program fail as a full disk or a broken one does. TRUNNION_FAULT is
 //   write N | fsync N | rename N | open N | read N   the N-th call on a regular file fails (ENOSPC, EIO, EACCES,
-//   EMFILE, EIO) dribble SEED                                      every read and write is interrupted now and then,
-//   and short
+//   EMFILE, EIO)
+//   full N                                                         ... and every write after it, as of a full disk
+//   dribble SEED                                                   reads and writes are interrupted now and then, and
+//   short
 // TRUNNION_CALLS names a file that takes how many calls of the kind there were.
 
 #include <dlfcn.h>
@@ -56,7 +58,11 @@ Fault& fault() {
 /// Whether this call is the one that fails.
 bool strikes(const char* kind, int error) {
   Fault& f = fault();
-  if (f.kind != kind || ++f.calls != f.number) return false;
+  if (f.kind == "full" && std::strcmp(kind, "write") == 0) {
+    if (++f.calls < f.number) return false;
+  } else if (f.kind != kind || ++f.calls != f.number) {
+    return false;
+  }
   errno = error;
   return true;
 }

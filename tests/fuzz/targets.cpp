@@ -79,15 +79,17 @@ void refused_or(const Read& read) {
   }
 }
 
-void log(const char* format, const std::uint8_t* data, std::size_t size) {
+/// @param channel that a user may name
+void log(const char* format, const char* channel, const std::uint8_t* data, std::size_t size) {
   const File file(data, size);
-  for (const int way : {0, 1, 2, 3}) {
+  for (const int way : {0, 1, 2, 3, 4}) {
     refused_or([&] {
       Finite sink;
       io::LogRequest request;
       request.path = file.path();
       request.need_imu = way != 2;
       request.need_encoder = way == 1 || way == 2;
+      if (way == 4) request.channels.imu.name = channel;
       if (way == 3) request.columns = {{"t", {"", 0, "samples"}}, {"gyro_x", {"", 2, "counts"}}};
       request.channels.sheet.rate_hz = 100.0;
       io::format_by_name(format).read(request, sink);
@@ -103,11 +105,33 @@ const std::vector<io::SignalName>& signals() {
 
 }  // namespace
 
-void csv(const std::uint8_t* data, std::size_t size) { log("csv", data, size); }
-void mcap(const std::uint8_t* data, std::size_t size) { log("mcap", data, size); }
-void mip(const std::uint8_t* data, std::size_t size) { log("mip", data, size); }
-void ulog(const std::uint8_t* data, std::size_t size) { log("ulog", data, size); }
-void lcm_log(const std::uint8_t* data, std::size_t size) { log("lcm", data, size); }
+void csv(const std::uint8_t* data, std::size_t size) { log("csv", "", data, size); }
+void mcap(const std::uint8_t* data, std::size_t size) { log("mcap", "/imu", data, size); }
+void ulog(const std::uint8_t* data, std::size_t size) { log("ulog", "vehicle_imu#1", data, size); }
+void lcm_log(const std::uint8_t* data, std::size_t size) { log("lcm", "X", data, size); }
+
+/// As it is, and with the checksums that make its packets whole.
+void mip(const std::uint8_t* data, std::size_t size) {
+  log("mip", "", data, size);
+  std::vector<std::uint8_t> whole(data, data + size);
+  for (std::size_t at = 0; at + 6 <= size;) {
+    const std::size_t length = 4 + std::size_t{whole[at + 3]};
+    if (whole[at] != 0x75 || whole[at + 1] != 0x65 || at + length + 2 > size) {
+      ++at;
+      continue;
+    }
+    std::uint8_t a = 0;
+    std::uint8_t b = 0;
+    for (std::size_t i = 0; i < length; ++i) {
+      a = static_cast<std::uint8_t>(a + whole[at + i]);
+      b = static_cast<std::uint8_t>(b + a);
+    }
+    whole[at + length] = a;
+    whole[at + length + 1] = b;
+    at += length + 2;
+  }
+  log("mip", "", whole.data(), whole.size());
+}
 
 /// The first byte chooses who reads: our own types, or a preset's.
 void lcm_message(const std::uint8_t* data, std::size_t size) {

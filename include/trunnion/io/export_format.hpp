@@ -28,7 +28,8 @@ struct ExportRequest {
 
 struct Exported {
   std::string text;
-  /// What the target computes of a reading with the numbers of the file: true rate and specific force.
+  /// What the target computes of a reading with the numbers of the file, and with our biases where it has its own of
+  /// them: true rate and specific force. The size effect is not in it.
   std::function<InertialSample<double>(const InertialSample<double>&)> correct;
   Mat3<double> C_tb = Mat3<double>::Identity();  ///< to the axes in which the target states them
   std::vector<std::string> advice;               ///< for people: what to do with it, what was not known
@@ -41,6 +42,7 @@ struct ExportFormat {
   double precision;       ///< relative, of the numbers that the target keeps
   bool holds_temperature;
   bool holds_places;  ///< of the accelerometers: the size effect
+  bool holds_biases;  ///< else its reader estimates them itself
   Exported (*make)(const ExportRequest& request);
 };
 
@@ -55,8 +57,8 @@ struct Omission {
 };
 
 /// How far the target's correction is from the true input, at most, over rates to @p rate about each axis and between,
-/// and gravity in every direction; each sensor alone.
-InertialSample<double> departure(const InertialUnit<double>& unit, const Exported& exported, double rate);
+/// and gravity in every direction; each sensor alone, at the reference temperature.
+InertialSample<double> departure(const ExportFormat& format, const ExportRequest& request, double rate);
 
 /// What @p format leaves out of the unit, term by term, each with its size at @p rate and one g.
 std::vector<Omission> omissions(const ExportFormat& format, const ExportRequest& request, double rate);
