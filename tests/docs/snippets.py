@@ -11,6 +11,8 @@ import shlex
 import subprocess
 import sys
 
+import yaml
+
 source, commands = pathlib.Path(sys.argv[1]), sys.argv[2]
 programs = {name for name in os.listdir(commands) if re.match(r"(imu|gnss)_[a-z]+$", name)}
 helps, faults, checked = {}, [], 0
@@ -60,12 +62,8 @@ for page in [source / "README.md", source / "CONTRIBUTING.md", *sorted((source /
         elif fence:
             if language == "yaml":
                 try:
-                    import yaml
-
                     yaml.safe_load("\n".join(block))
                     checked += 1
-                except ImportError:
-                    pass
                 except yaml.YAMLError as error:
                     faults.append(f"{page.relative_to(source)}:{begin}: no YAML: {error}")
             language = None

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the trunnion authors
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Ten thousand mutated logs, tables, YAML files and URDFs: each is read to its end or refused, and never anything
+/// Mutated logs, tables, YAML files and URDFs, 2500 of each kind: each is read to its end or refused, and never anything
 /// else. Under the sanitize preset a memory error or undefined behaviour ends the test.
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@
 namespace trunnion {
 namespace {
 
-constexpr int kMutations = 2500;  // of each of the four kinds
+constexpr int kMutations = 2500;  // of each kind
 
 /// Feeds mutations of @p seed to @p read; every outcome but a clean read or an Error fails the test.
 void run(const char* kind, const std::string& seed, const std::string& path, const std::function<void()>& read) {

@@ -314,6 +314,22 @@ TEST(AxialPhase, FindsTheIndexAgainAfterTheBodyTurned) {
   }
   EXPECT_GE(accepted, 7);
 }
+// Between two pulses, so that the next is no longer where the gyro has it: passed over twice, and then believed.
+TEST(AxialPhase, BeginsAnewWhereTheIndexInsists) {
+  AxialPhase phase(200 * 1000);
+  std::vector<IndexPulse> seen;
+  for (int i = 0; i < 3000; ++i) {
+    const std::int32_t axial = i > 1060 && i < 1240 ? 1440 : 1000;
+    (void)phase.middle(axial);
+    if (i % 200 == 50) seen.push_back(phase.pulse(30000, axial));
+  }
+  ASSERT_EQ(seen.size(), 15U);
+  for (std::size_t k = 0; k < seen.size(); ++k) {
+    const bool lost = k == 6 || k == 7;
+    EXPECT_EQ(seen[k].before, lost ? -1 : 30000) << k;
+    EXPECT_EQ(seen[k].turns, lost || k == 0 || k == 8 ? 0 : 1) << k;
+  }
+}
 TEST(AxialPhase, TellsAnInvertedIndex) {
   Platform p;
   // low for a moment, high for the rest: a level-triggered input sees a pulse in nearly every sample

@@ -126,9 +126,9 @@ class TwoPositionModulation {
       case FlipState::kSettling:
         return settling(platform, sample);
       case FlipState::kFlipping:
-        return bridge(sample, T(1));
+        break;
     }
-    return false;
+    return bridge(sample, T(1));
   }
 
   [[nodiscard]] const ModulatedInterval<T>& interval() const { return interval_; }
