@@ -11,7 +11,11 @@ import shlex
 import subprocess
 import sys
 
-import yaml
+try:
+    import yaml
+except ImportError:
+    print("PyYAML is not installed (python3-yaml): skipped")
+    sys.exit(77)
 
 source, commands = pathlib.Path(sys.argv[1]), sys.argv[2]
 programs = {name for name in os.listdir(commands) if re.match(r"(imu|gnss)_[a-z]+$", name)}
