@@ -123,9 +123,9 @@ def full_live(times):
     live_folder("full")
     log = "full/position_1.lcm"
     listen = command("imu_live", "full/run.yaml", "--unattended", "--silence-s", "3", "--port", "0", "-o", "full/calibration.yaml")
-    play = command("imu_replay", "table/position_1.lcm", "--speed", "40", "--end", "120")
+    play = command("imu_replay", "table/position_1.lcm", "--speed", "10", "--end", "250")
     kept, fullest = b"", 0
-    for number in sorted(random.sample(range(1, 40), times)):
+    for number in sorted(random.sample(range(1, 16), times)):
         environment = {**os.environ, "LD_PRELOAD": shim, "TRUNNION_FAULT": f"full {number}"}
         session = subprocess.Popen(listen, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
         time.sleep(1.0)
@@ -189,7 +189,7 @@ with tempfile.TemporaryDirectory() as folder:
     os.chdir(folder)
     subprocess.run(command("imu_calibrate", "simulate", "--seed", "7", "-o", "table"), capture_output=True, check=True)
     if live:
-        full_live(20)
+        full_live(10)
         killed_live(kills)
     else:
         subprocess.run(command("imu_calibrate", "solve", "table/run.yaml", "-o", "calibration.yaml"), capture_output=True, check=True)

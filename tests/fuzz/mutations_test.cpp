@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the trunnion authors
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Mutated logs, tables, YAML files and URDFs, 2500 of each kind: each is read to its end or refused, and never anything
-/// else. Under the sanitize preset a memory error or undefined behaviour ends the test.
+/// Mutated logs, tables, YAML files and URDFs, 2500 of each kind: each is read to its end or refused, and never
+/// anything else. Under the sanitize preset a memory error or undefined behaviour ends the test.
 
 #include <gtest/gtest.h>
 
