@@ -41,7 +41,7 @@ def of_table(path):
     with open(path, newline="") as file:
         rows = csv.reader(file)
         next(rows)
-        return len([[float(cell) for cell in row] for row in rows])
+        return len([[float(cell or "nan") for cell in row] for row in rows])
 
 
 def of_mip(path):
