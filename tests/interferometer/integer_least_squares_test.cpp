@@ -202,6 +202,11 @@ TEST(IntegerLeastSquares, RefusesWhatIsNoProblem) {
   BoundedMatrix<double, kMost> huge = one;
   huge(0, 1) = huge(1, 0) = std::numeric_limits<double>::infinity();
   EXPECT_EQ(lambda(Vector(Eigen::Vector2d(0.1, 0.2)), huge).status(), Status::kOutOfRange);
+  Eigen::Matrix<double, Eigen::Dynamic, 3, 0, kMost, 3> unknowns(2, 3);
+  unknowns.setOnes();
+  EXPECT_EQ((Decorrelation<double, kMost>(one, unknowns).status()), Status::kOk);
+  unknowns(1, 2) = std::numeric_limits<double>::infinity();
+  EXPECT_EQ((Decorrelation<double, kMost>(one, unknowns).status()), Status::kOutOfRange);
   std::mt19937_64 rng(5);
   const Problem hard = random_problem(20, rng);
   EXPECT_EQ(lambda(hard.a, hard.Q, {10}).status(), Status::kTimeOut);

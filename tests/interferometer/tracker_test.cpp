@@ -344,6 +344,24 @@ TEST(BroadcastOrbit, GoesRoundAsKeplerSays) {
   }
 }
 
+/// Codes of metres on baselines of a metre: no covariance of theirs would be true, so no attitude is told.
+TEST(FloatAttitude, IsToldOnlyWhereItSaysSomething) {
+  const RigidVectors<double, 2> figure = figure_of(flying(1, 0.0), 0.001);
+  EpochAttitude<double, 2> epoch;
+  epoch.seen.value = figure.seen_from(Mat3<double>::Identity());
+  epoch.seen.information.setIdentity();
+  epoch.seen.information /= 0.1 * 0.1;
+  kernel::take_float(figure, epoch);
+  EXPECT_EQ(epoch.status, AttitudeStatus::kFloat);
+  EXPECT_EQ(epoch.attitude.observable, 3);
+  EpochAttitude<double, 2> vague;
+  vague.seen.value = epoch.seen.value;
+  vague.seen.information.setIdentity();
+  kernel::take_float(figure, vague);
+  EXPECT_EQ(vague.status, AttitudeStatus::kFloat);
+  EXPECT_EQ(vague.attitude.observable, 0);
+}
+
 /// BeiDou's plane is tilted and turned back: over one place on the equator a satellite of the Earth's own rate stands.
 TEST(BroadcastOrbit, OfAGeostationarySatelliteStands) {
   constexpr double kRate = 7.292115e-5;

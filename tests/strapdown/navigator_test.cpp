@@ -291,6 +291,22 @@ TEST(Navigator, RefusesWhatIsNotFiniteAndGoesOn) {
   EXPECT_EQ(plain.state().velocity, troubled.state().velocity);
 }
 
+// A minute at rest: float rounds every increment to 6e-8 of g, half a t^2 of which is a millimetre.
+TEST(Navigator, InFloatStaysWhereDoubleStays) {
+  const PathTruth<AtRest> truth(AtRest{});
+  const Increment<double> increment = cast<double>(truth.increment(0.0L, 0.01L));
+  const Increment<float> rounded = cast<float>(truth.increment(0.0L, 0.01L));
+  Navigator<PreviousSample<double>> wide(truth.state(0.0L), 0.01);
+  Navigator<PreviousSample<float>> narrow(truth.state(0.0L), 0.01F);
+  for (int i = 0; i < 6000; ++i) {
+    ASSERT_EQ(wide.add(increment), Status::kOk);
+    ASSERT_EQ(narrow.add(rounded), Status::kOk);
+  }
+  const Error off = difference(narrow.state<Wide>(), wide.state<Wide>());
+  EXPECT_LT(off.horizontal, 0.005);
+  EXPECT_LT(off.up, 0.005);
+}
+
 // What goes in at the border comes out, at every latitude, in the digits of the wider scalar.
 TEST(Navigator, KeepsTheStateItWasGiven) {
   for (const Wide latitude : {-1.5L, -0.7L, 0.0L, 0.9L, 1.57L}) {
