@@ -222,6 +222,8 @@ TEST(FineAlignment, RefusesAMovingBase) {
   FineAlignment<PreviousSample<double>> alignment(start, kPeriod, 10, Vec3<double>::Zero(), navigation_grade(1e-3));
   for (int i = 0; i < 6000; ++i)
     ASSERT_EQ(alignment.add({sample.angle.cast<double>(), sample.velocity.cast<double>()}), Status::kOk);
+  EXPECT_LT(alignment.gyro_bias().norm(), 1e-9) << "of perfect sensors";
+  EXPECT_LT(alignment.accel_bias().norm(), 1e-6);
   for (int i = 0; i < 500; ++i)
     (void)alignment.add(
         {sample.angle.cast<double>(), sample.velocity.cast<double>() + Vec3<double>(0.1 * kPeriod, 0.0, 0.0)});

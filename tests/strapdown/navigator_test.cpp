@@ -286,6 +286,7 @@ TEST(Navigator, RefusesWhatIsNotFiniteAndGoesOn) {
     }
     EXPECT_EQ(plain.add(increment), Status::kOk);
     EXPECT_EQ(troubled.add(increment), Status::kOk);
+    EXPECT_EQ(plain.updated(), i % 4 == 3);
   }
   EXPECT_EQ(plain.state().latitude, troubled.state().latitude);
   EXPECT_EQ(plain.state().velocity, troubled.state().velocity);
