@@ -42,8 +42,6 @@ class LcmSampleWriter final : public LogWriter {
   double celsius_ = std::numeric_limits<double>::quiet_NaN();
 };
 
-}  // namespace
-
 struct Stranger {
   std::string_view begins;
   const char* what;
@@ -69,6 +67,8 @@ const Stranger kStrangers[] = {
       4},
      "is a program"},
 };
+
+}  // namespace
 
 /// The last of the list: a log that begins with damage is one still.
 const LogFormat kLcmFormat = {

@@ -278,12 +278,12 @@ std::size_t TextTable::find(const std::string& name, const std::string& quantity
 std::string TextTable::find_by_name(const std::string& quantity, std::size_t& index) const {
   const Units units = units_of(quantity);
   std::string wanted;
-  std::string unit;
+  const char* unit = nullptr;  // of the column that was found
   const auto look_for = [&](const std::string& name, const char* its_unit) {
     wanted += (wanted.empty() ? "" : ", ") + name;
     for (std::size_t i = 0; i < names_.size(); ++i) {
       if (names_[i] != name) continue;
-      if (!unit.empty())
+      if (unit != nullptr)
         throw input_error(path_, header_line_, quantity,
                           "is there twice, as '" + names_[index] + "' and '" + name + "': map one under columns:");
       index = i;
@@ -292,7 +292,7 @@ std::string TextTable::find_by_name(const std::string& quantity, std::size_t& in
   };
   for (std::size_t i = 0; i < units.count; ++i) look_for(quantity + units.first[i].suffix, units.first[i].name);
   if (quantity == "t") look_for("utime", "us");
-  if (!unit.empty() || (units.count == 1 && has_column(wanted))) return unit;
+  if (unit != nullptr) return unit;
   for (const std::string& name : names_) {
     if (name == quantity) {
       throw input_error(
