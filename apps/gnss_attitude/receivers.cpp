@@ -17,7 +17,6 @@ namespace {
 constexpr double kBackwards = 10.0;             // s, and more ahead is no time to believe
 constexpr std::size_t kMostWaiting = 16;        // epochs of an antenna
 constexpr double kMeets = 0.005;                // s, within which receivers' epochs are one
-constexpr std::int64_t kUnixToGps = 315964800;  // s, 1970 to 1980-01-06
 
 std::string time_text(const GpsTime& time) {
   char text[64];
@@ -26,10 +25,6 @@ std::string time_text(const GpsTime& time) {
 }
 
 }  // namespace
-
-std::int64_t utime_of(const GpsTime& time) {
-  return (kUnixToGps + static_cast<std::int64_t>(time.week) * 604800) * 1000000 + std::llround(time.seconds * 1e6);
-}
 
 std::vector<io::SignalName> common_signals(const std::vector<std::string>& paths) {
   std::vector<std::vector<io::SignalName>> all;

@@ -19,9 +19,6 @@
 
 namespace trunnion::app {
 
-/// us of GPS time since 1970, without leap seconds: the stamp where there is none but the receivers'.
-std::int64_t utime_of(const GpsTime& time);
-
 struct ReceiverFigures {
   long long epochs = 0;               ///< of the master
   std::vector<long long> with_slave;  ///< of these, each slave was heard

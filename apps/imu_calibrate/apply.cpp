@@ -111,7 +111,7 @@ void apply(const Options& o) {
   sources.insert(sources.end(), {o.input, o.calibration});
   keep_inputs(o.output, sources);
   const io::LogFormat& format = io::format_of(files.name());
-  const bool is_log = !files.log.empty() && std::string(format.name) == "lcm";
+  const bool is_log = !files.log.empty() && format.by_channel;
   if (std::filesystem::path(o.output).extension() != (is_log ? ".lcm" : ".csv"))
     throw Error(ExitCode::kUsage, o.output + (is_log ? ": a corrected LCM log is a .lcm"
                                                      : std::string(": a corrected ") + format.title + " is a .csv"));

@@ -98,7 +98,8 @@ void convert(const Options& o) {
   std::vector<std::string> sources = files_of(run);
   sources.insert(sources.end(), {o.input});
   keep_inputs(o.output, sources);
-  if (std::string(format.name) == "csv") keep_inputs(io::encoder_table_of(o.output), sources);
+  const std::string encoder_file = format.encoder_file == nullptr ? o.output : format.encoder_file(o.output);
+  keep_inputs(encoder_file, sources);
   Readings apart;
   io::LogLosses lost;
   if (!files.encoder.empty()) {
@@ -127,10 +128,8 @@ void convert(const Options& o) {
   if (sink.steps_back > 0)
     std::fprintf(stderr, "%s: stamps go back %lld times, first at sample %lld: kept as they are\n", o.input.c_str(),
                  sink.steps_back, sink.first_back);
-  if (std::string(format.name) == "csv" && writer->files().size() == 1 &&
-      std::filesystem::exists(io::encoder_table_of(o.output)))
-    std::fprintf(stderr, "%s: is not of this recording, which has no readings of encoders\n",
-                 io::encoder_table_of(o.output).c_str());
+  if (encoder_file != o.output && writer->files().size() == 1 && std::filesystem::exists(encoder_file))
+    std::fprintf(stderr, "%s: is not of this recording, which has no readings of encoders\n", encoder_file.c_str());
   say_losses(losses);
   say_losses(lost);
 }

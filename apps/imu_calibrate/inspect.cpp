@@ -174,7 +174,7 @@ Json inspect_recording(const io::RunFile& run, const io::RecordingFiles& files, 
   if (!files.mount.empty()) json["mount"] = files.mount;
   const io::LogFormat& format = io::format_of(files.name());
   json["format"] = format.name;
-  if (!files.log.empty() && std::string(format.name) == "lcm") look_at_channels(files.log, types, json);
+  if (!files.log.empty() && format.by_channel) look_at_channels(files.log, types, json);
   InspectSink sink(files.name(), {run.sheet.gyro_range, run.sheet.accel_range});
   std::vector<std::pair<std::string, std::string>> digests;
   try {

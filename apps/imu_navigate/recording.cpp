@@ -240,7 +240,7 @@ void judge_magnitude(const RecordingSource& source, Recording& recording) {
 Recording read_recording(const RecordingSource& source) {
   Recording recording;
   Collector collector(source.log, recording);
-  if (std::string(io::format_of(source.log).name) == "lcm") {
+  if (io::format_of(source.log).by_channel) {
     read_log(source, collector, recording);
   } else {
     io::LogRequest request;

@@ -9,6 +9,7 @@
 #include "trunnion/core/chi_square.hpp"
 #include "trunnion/core/earth.hpp"
 #include "trunnion/core/fixed.hpp"
+#include "trunnion/core/gps_time.hpp"
 #include "trunnion/core/linear.hpp"
 #include "trunnion/core/rotation.hpp"
 #include "trunnion/core/status.hpp"

@@ -3,6 +3,7 @@
 
 #include "column_units.hpp"
 
+#include "trunnion/core/gps_time.hpp"
 #include "trunnion/core/units.hpp"
 #include "trunnion/io/csv.hpp"
 
@@ -11,7 +12,7 @@ namespace {
 
 constexpr std::array<Unit, 5> kTimeUnits = {
     {{"s", "_s", 1.0}, {"ms", "_ms", 1e-3}, {"us", "_us", 1e-6}, {"ns", "_ns", 1e-9}, {"100us", "_100us", 1e-4}}};
-constexpr std::array<Unit, 1> kWeekUnits = {{{"weeks", "_weeks", 604800.0}}};  // of GPS
+constexpr std::array<Unit, 1> kWeekUnits = {{{"weeks", "_weeks", kSecondsPerWeek}}};
 constexpr std::array<Unit, 3> kRateUnits = {
     {{"rad/s", "_rad_s", 1.0}, {"deg/s", "_deg_s", kRadPerDeg}, {"deg/h", "_deg_h", kRadPerSPerDegPerH}}};
 constexpr std::array<Unit, 3> kForceUnits = {

@@ -15,13 +15,13 @@
 #include "column_units.hpp"
 #include "log_formats.hpp"
 #include "text_table.hpp"
+#include "trunnion/core/gps_time.hpp"
 #include "trunnion/io/fault.hpp"
 #include "trunnion/io/whole_file.hpp"
 
 namespace trunnion::io {
 namespace {
 
-constexpr double kGpsEpoch = 315964800.0;  // s since 1970, leap seconds not counted
 constexpr long long kRowsBetween = 65536;  // two words of progress
 constexpr double kCounterWraps = 65536.0;  // samples: a counter of 16 bits, or one that never does
 
@@ -136,7 +136,8 @@ LogLosses read_csv(const LogRequest& request, SampleSink& sink) {
     const double t = table.microseconds();
     if (wraps_at > 0.0 && rows > 1 && last - t > 0.5 * wraps_at) wrapped += wraps_at;
     last = t;
-    const std::int64_t utime = to_utime(t + wrapped + (week > 0 ? 1e6 * (kGpsEpoch + v[week]) : 0.0), table);
+    const std::int64_t utime =
+        to_utime(t + wrapped + (week > 0 ? 1e6 * (static_cast<double>(kGpsEpoch) + v[week]) : 0.0), table);
     if (temperature > 0 && std::isfinite(v[temperature])) sink.temperature(v[temperature]);  // a slow one: empty cells
     if (request.need_imu) sink.imu(utime, {Vec3<double>(v[1], v[2], v[3]), Vec3<double>(v[4], v[5], v[6])});
     if (request.need_encoder) sink.encoder(utime, v[angles], v[angles + 1]);
@@ -227,8 +228,12 @@ std::string encoder_table_of(const std::string& path) {
 }
 
 const LogFormat kCsvFormat = {
-    "csv",    "table",
-    ".csv",   is_text,
-    read_csv, [](const std::string& path) -> std::unique_ptr<LogWriter> { return std::make_unique<CsvWriter>(path); }};
+    "csv",
+    "table",
+    ".csv",
+    is_text,
+    read_csv,
+    [](const std::string& path) -> std::unique_ptr<LogWriter> { return std::make_unique<CsvWriter>(path); },
+    encoder_table_of};
 
 }  // namespace trunnion::io

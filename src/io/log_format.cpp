@@ -77,7 +77,9 @@ const LogFormat kLcmFormat = {
     ".lcm",
     [](std::string_view) { return true; },
     read_lcm_recording,
-    [](const std::string& path) -> std::unique_ptr<LogWriter> { return std::make_unique<LcmSampleWriter>(path); }};
+    [](const std::string& path) -> std::unique_ptr<LogWriter> { return std::make_unique<LcmSampleWriter>(path); },
+    nullptr,
+    true};
 
 const std::vector<LogFormat>& log_formats() {
   static const std::vector<LogFormat> kFormats = {kUlogFormat, kMcapFormat, kMipFormat, kCsvFormat, kLcmFormat};

@@ -11,6 +11,7 @@
 #include "big_endian.hpp"
 #include "byte_stream.hpp"
 #include "log_formats.hpp"
+#include "trunnion/core/gps_time.hpp"
 #include "trunnion/core/units.hpp"
 #include "trunnion/positions/channel_clock.hpp"
 
@@ -22,8 +23,6 @@ constexpr std::size_t kChecksum = 2;
 constexpr std::int64_t kLongestPacket = 261;
 constexpr std::uint8_t kSensorSet = 0x80;
 constexpr std::int64_t kLongestStep = 1000000;  // us, between two packets of increments
-constexpr double kSecondsPerWeek = 604800.0;
-constexpr double kGpsEpoch = 315964800.0;  // s since 1970, leap seconds not counted
 
 std::uint8_t byte_at(const char* p) { return static_cast<std::uint8_t>(*p); }
 
@@ -53,7 +52,7 @@ struct SensorPacket {
   std::optional<Vec3<double>> delta_velocity;  // m/s
   std::optional<std::int64_t> reference_ns;
   std::optional<std::int64_t> period_ns;
-  std::optional<std::int64_t> gps_us;  // since 1970, ahead of UTC by the leap seconds
+  std::optional<std::int64_t> gps_us;
 
   /// @return false for a field whose length is not that of its kind, and for a second of its kind
   bool take(std::uint8_t descriptor, const char* p, std::size_t length) {
@@ -74,7 +73,7 @@ struct SensorPacket {
         const auto flags = static_cast<std::uint16_t>(week_and_flags);
         const bool valid = descriptor == 0xD3 ? (flags & 3U) == 3U : (flags & 4U) != 0U;
         if (valid && tow >= 0.0 && tow < kSecondsPerWeek + 1.0)
-          gps_us = std::llround(1e6 * (kGpsEpoch + kSecondsPerWeek * static_cast<double>(week_and_flags >> 16U) + tow));
+          gps_us = utime_of({static_cast<int>(week_and_flags >> 16U), tow});
         return true;
       }
       case 0xD5:

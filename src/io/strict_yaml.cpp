@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <set>
 
 #include "trunnion/io/fault.hpp"
@@ -72,17 +73,20 @@ std::string nearest(const std::string& word, const std::vector<std::string>& kno
 }
 
 StrictYaml StrictYaml::load(const std::string& file, const std::string& format) {
+  std::error_code unknown;
+  if (std::filesystem::file_size(file, unknown) > kLargestYaml && !unknown)
+    throw input_error(file, 0, "", "is larger than any " + format + ": a recording is named in a run file");
   const std::string text = read_whole(file, kLargestYaml);
   if (too_deep(text)) throw input_error(file, 0, "", "is nested too deep");
   try {
     YAML::Node node = YAML::Load(text);
-    if (!node.IsMap()) throw input_error(file, 1, "", "is not a YAML map of keys");
+    if (!node.IsMap()) throw input_error(file, 1, "", "is not a YAML map of keys, as " + format + " is");
     StrictYaml root(file, "", node);
     const std::string found = root.at("format").text();
     if (found != format) root.at("format").fail("should be " + format + ", is " + found);
     return root;
   } catch (const YAML::Exception& e) {
-    throw input_error(file, e.mark.line + 1, "", "not YAML: " + e.msg);
+    throw input_error(file, e.mark.line + 1, "", "not YAML, as " + format + " is: " + printable(e.msg));
   }
 }
 

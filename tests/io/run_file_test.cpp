@@ -82,7 +82,8 @@ TEST_F(RunFileTest, NamesAWrongTypeRangeOrUnit) {
                  read(with("columns: {t: {column: 0, unit: s}, t: {column: 1, unit: s}}\n")));
   EXPECT_REFUSES(ExitCode::kInput, "recordings[0].log.encoder: the run has no rig",
                  read("format: trunnion-run/1\nsite: {latitude_deg: 1}\nrecordings: [{log: {imu: a, encoder: b}}]\n"));
-  EXPECT_REFUSES(ExitCode::kInput, "not YAML", read("format: [\n"));
+  EXPECT_REFUSES(ExitCode::kInput, "not YAML, as trunnion-run/1 is", read("format: [\n"));
+  EXPECT_REFUSES(ExitCode::kInput, "a recording is named in a run file", read(std::string(5 << 20, '\xed')));
   EXPECT_REFUSES(ExitCode::kInput, "nested too deep", read("format: " + std::string(5000, '[') + "\n"));
 }
 

@@ -17,6 +17,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "trunnion/core/gps_time.hpp"
 #include "trunnion/core/linear.hpp"
 #include "trunnion/core/status.hpp"
 #include "trunnion/core/units.hpp"
@@ -24,24 +25,6 @@
 namespace trunnion {
 
 inline constexpr double kLightSpeed = 299792458.0;  // m/s, exact
-inline constexpr double kSecondsPerWeek = 604800.0;
-
-/// GPS time: week since 1980-01-06 and seconds of it; 1e-10 s are told apart.
-struct GpsTime {
-  int week = 0;
-  double seconds = 0.0;
-
-  friend double operator-(const GpsTime& a, const GpsTime& b) {
-    return (a.week - b.week) * kSecondsPerWeek + (a.seconds - b.seconds);
-  }
-  /// Seconds stay within the week.
-  friend GpsTime operator+(const GpsTime& a, double s) {
-    const double whole = a.seconds + s;
-    const double weeks = std::floor(whole / kSecondsPerWeek);
-    if (!(std::abs(weeks) < 1e6)) return {a.week, whole};
-    return {a.week + static_cast<int>(weeks), whole - weeks * kSecondsPerWeek};
-  }
-};
 
 enum class SatelliteSystem : std::uint8_t { kGps, kGalileo, kQzss, kBeidou };
 

@@ -70,6 +70,9 @@ struct LogFormat {
   bool (*matches)(std::string_view head);
   LogLosses (*read)(const LogRequest& request, SampleSink& sink);
   std::unique_ptr<LogWriter> (*write)(const std::string& path);  ///< null: is only read
+  /// The file beside @p path that a writer gives the encoders; null: they are in the same.
+  std::string (*encoder_file)(const std::string& path) = nullptr;
+  bool by_channel = false;  ///< holds messages of a bus, some of other kinds than these
 };
 
 /// In the order in which they are tried; the last takes what nobody knows.
