@@ -25,9 +25,25 @@ std::string hexadecimal(std::uint64_t value) {
   return text;
 }
 
+bool is_utf_8(const std::string& text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto first = static_cast<unsigned char>(text[i]);
+    if (first < 0x80) continue;
+    const std::size_t more = first >= 0xf8 || first < 0xc0 ? 0 : first >= 0xf0 ? 3 : first >= 0xe0 ? 2 : 1;
+    if (more == 0 || more >= text.size() - i) return false;
+    for (std::size_t k = 1; k <= more; ++k) {
+      if ((static_cast<unsigned char>(text[i + k]) & 0xc0U) != 0x80U) return false;
+    }
+    i += more;
+  }
+  return true;
+}
+
 std::string printable(std::string name) {
+  const bool is_text = is_utf_8(name);
   for (char& c : name) {
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x20 || byte == 0x7f || (byte > 0x7f && !is_text)) c = '?';
   }
   return name;
 }

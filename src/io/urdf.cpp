@@ -61,22 +61,6 @@ std::size_t count(const std::string& text, const std::string& word) {
   return n;
 }
 
-/// Whether every character has the bytes that its first one promises: TinyXML reads on past the end after one that has
-/// not.
-bool is_utf_8(const std::string& text) {
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const auto first = static_cast<unsigned char>(text[i]);
-    if (first < 0x80) continue;
-    const std::size_t more = first >= 0xf8 || first < 0xc0 ? 0 : first >= 0xf0 ? 3 : first >= 0xe0 ? 2 : 1;
-    if (more == 0 || more >= text.size() - i) return false;
-    for (std::size_t k = 1; k <= more; ++k) {
-      if ((static_cast<unsigned char>(text[i + k]) & 0xc0U) != 0x80U) return false;
-    }
-    i += more;
-  }
-  return true;
-}
-
 /// Axis of a turning joint, checked.
 Vec3<double> axis_of(const std::string& path, const urdf::Joint& joint) {
   const std::string field = "joint '" + joint.name + "'";
@@ -112,7 +96,8 @@ AxisLimits limits_of(const urdf::Joint& joint) {
 RigFile read_rig(const std::string& path, const std::string& outer_axis, const std::string& inner_axis,
                  const std::vector<std::string>& wanted) {
   const std::string text = read_whole(path, kLargestUrdf);
-  if (!is_utf_8(text)) throw input_error(path, 0, "", "is no text in UTF-8");
+  if (!is_utf_8(text))  // TinyXML reads on past the end after a character that has not the bytes it promises
+    throw input_error(path, 0, "", "is no text in UTF-8");
   if (too_deep(text)) throw input_error(path, 0, "", "is nested too deep");
   Capture capture;
   const urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(text);

@@ -21,7 +21,10 @@ Error input_error_at_byte(const std::string& file, long long byte, const std::st
 /// A fingerprint as people quote it: "0x12aff17a21db298c".
 std::string hexadecimal(std::uint64_t value);
 
-/// A name from a file as it may reach a terminal: control bytes become '?'.
+/// Whether every character has the bytes that its first one promises.
+bool is_utf_8(const std::string& text);
+
+/// A name from a file as it may reach a terminal: control bytes, and those of no UTF-8, become '?'.
 std::string printable(std::string name);
 
 }  // namespace trunnion::io
