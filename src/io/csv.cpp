@@ -142,6 +142,7 @@ LogLosses read_csv(const LogRequest& request, SampleSink& sink) {
     if (request.need_imu) sink.imu(utime, {Vec3<double>(v[1], v[2], v[3]), Vec3<double>(v[4], v[5], v[6])});
     if (request.need_encoder) sink.encoder(utime, v[angles], v[angles + 1]);
   }
+  if (rows == 0) throw input_error(request.path, 0, "", "has no row of numbers");
   LogLosses losses;
   if (without_week > 0)
     losses.note = std::to_string(without_week) + " rows of GPS week 0, before the time was known, are left out";

@@ -4,6 +4,7 @@
 #include "trunnion/io/log_format.hpp"
 
 #include <algorithm>
+#include <filesystem>
 
 #include "byte_stream.hpp"
 #include "log_formats.hpp"
@@ -61,6 +62,12 @@ const Stranger kStrangers[] = {
     {{"SQLite format 3", 15},
      "is a database, as ROS 2 records into by default before Iron: convert it (ros2 bag convert) to MCAP"},
     {{"\x89HDF", 4}, "is HDF5: write its samples as a table"},
+    {{"PAR1", 4}, "is Parquet: write its samples as a table"},
+    {{"TDSm", 4}, "is TDMS: write its samples as a table"},
+    {{"\xd0\xcf\x11\xe0", 4}, "is a file of an old office program: write its samples as a table"},
+    {{"<?xml", 5}, "is XML, not a recording"},
+    {{"{\n", 2}, "is JSON: write its samples as a table"},
+    {{"{\"", 2}, "is JSON: write its samples as a table"},
     {{"MATLAB 5.0 MAT-file", 19}, "is a MAT-file: write its samples as a table"},
     {{"\x7f"
       "ELF",
@@ -95,6 +102,9 @@ const LogFormat& format_by_name(const std::string& name) {
 }
 
 const LogFormat& format_of(const std::string& path) {
+  std::error_code unknown;
+  if (std::filesystem::is_directory(path, unknown))
+    throw input_error(path, 0, "", "is a folder: name the recording in it, as a bag of ROS 2 has a .mcap");
   ByteStream file(path);
   file.have(kHead);
   const std::string_view head(file.data(), std::min(kHead, file.available()));

@@ -75,15 +75,21 @@ inline LogLosses losses_of(const SampleIntake& intake, std::int64_t bytes, const
   return losses;
 }
 
+/// " on 'name'", where the user gave one.
+inline std::string on(const std::string& name) { return name.empty() ? "" : " on '" + printable(name) + "'"; }
+
 /// Refuses a log that had not what was asked for. @param bytes of it; @param holds what it had instead, for people
 inline void require(const LogRequest& request, const SampleIntake& intake, std::int64_t bytes,
                     const std::string& holds) {
   intake.finish(bytes);
   if (request.need_imu && intake.samples() == 0)
-    throw input_error(request.path, 0, "", "has no samples of an IMU" + (holds.empty() ? "" : "; it has " + holds));
+    throw input_error(
+        request.path, 0, "",
+        "has no samples of an IMU" + on(request.channels.imu.name) + (holds.empty() ? "" : "; it has " + holds));
   if (request.need_encoder && intake.encoders() == 0)
     throw input_error(request.path, 0, "",
-                      "has no readings of two encoders" + (holds.empty() ? "" : "; it has " + holds));
+                      "has no readings of two encoders" + on(request.channels.encoder.name) +
+                          (holds.empty() ? "" : "; it has " + holds));
 }
 
 }  // namespace trunnion::io

@@ -1,12 +1,10 @@
 // SPDX-FileCopyrightText: 2026 the trunnion authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// MCAP, the container of ROS 2's recordings. Between two marks records: kind (8 bits), length (64), content; numbers
-// are little-endian, a text is its length (32 bits) and its bytes. Chunks hold records in turn, compressed. Read from
-// front to back: what comes after the data, and the indices, are passed over, so a recording that was cut is read, too.
+// MCAP, the container of ROS 2's recordings. Chunks hold records in turn, compressed. Read from front to back: what
+// comes after the data, and the indices, are passed over, so a recording that was cut is read, too.
 
 #include <lz4frame.h>
-#include <zlib.h>
 #include <zstd.h>
 
 #include <algorithm>
@@ -20,29 +18,16 @@
 #include "byte_stream.hpp"
 #include "little_endian.hpp"
 #include "log_formats.hpp"
+#include "mcap_records.hpp"
 #include "ros_message.hpp"
-#include "trunnion/io/whole_file.hpp"
 
 namespace trunnion::io {
 namespace {
 
-constexpr std::string_view kMagic("\x89MCAP0\r\n", 8);
-constexpr std::size_t kRecordHeader = 9;
 constexpr std::uint64_t kLargestChunk = std::uint64_t{1} << 28U;
 constexpr std::uint64_t kLargestRecord = std::uint64_t{1} << 28U;  // of what is read
 constexpr std::size_t kLongestName = 1024;                         // of a topic, a type or an encoding: ROS has 255
 constexpr std::uint64_t kJitter = 100000000;                       // ns, by which recorders mix up what comes at once
-constexpr std::uint32_t kChunkBytes = 1U << 20U;
-
-enum Kind : std::uint8_t {
-  kHeader = 1,
-  kFooter = 2,
-  kSchema = 3,
-  kChannel = 4,
-  kMessage = 5,
-  kChunk = 6,
-  kDataEnd = 15,
-};
 
 /// Members of a record, one after the other.
 class Fields {
@@ -149,23 +134,25 @@ class McapReader {
       : request_(request), stream_(request.path, request.digest), intake_(sink) {}
 
   LogLosses read() {
-    stream_.skip(stream_.have(kMagic.size()) ? kMagic.size() : stream_.available());
+    stream_.skip(stream_.have(kMcapMagic.size()) ? kMcapMagic.size() : stream_.available());
     bool ended = false;
     std::int64_t cut = 0;
     ByteProgress progress(request_.progress);
-    while (!ended && stream_.have(kRecordHeader)) {
-      const auto kind = static_cast<std::uint8_t>(stream_.data()[0]);
+    while (!ended && stream_.have(kMcapRecordHeader)) {
+      const auto kind = static_cast<McapKind>(stream_.data()[0]);
       const auto length = load_little<std::uint64_t>(stream_.data() + 1);
-      const auto rest = static_cast<std::uint64_t>(stream_.size() - stream_.offset()) - kRecordHeader;
-      const bool wanted = kind >= kSchema && kind <= kChunk;
-      if (kind == 0 || length > rest || (wanted && length > (kind == kChunk ? kLargestChunk : kLargestRecord))) break;
+      const auto rest = static_cast<std::uint64_t>(stream_.size() - stream_.offset()) - kMcapRecordHeader;
+      const bool wanted = kind >= McapKind::kSchema && kind <= McapKind::kChunk;
+      if (kind == McapKind{} || length > rest ||
+          (wanted && length > (kind == McapKind::kChunk ? kLargestChunk : kLargestRecord)))
+        break;
       if (wanted) {
-        if (!stream_.have(kRecordHeader + static_cast<std::size_t>(length))) break;
+        if (!stream_.have(kMcapRecordHeader + static_cast<std::size_t>(length))) break;
         byte_ = stream_.offset();
-        take(kind, {stream_.data() + kRecordHeader, static_cast<std::size_t>(length)});
+        take(kind, {stream_.data() + kMcapRecordHeader, static_cast<std::size_t>(length)});
       }
-      stream_.pass(kRecordHeader + length);
-      ended = kind == kDataEnd || kind == kFooter;
+      stream_.pass(kMcapRecordHeader + length);
+      ended = kind == McapKind::kDataEnd || kind == McapKind::kFooter;
       progress.show(stream_);
     }
     if (!ended) cut = std::max<std::int64_t>(stream_.size() - stream_.offset(), 1);
@@ -173,8 +160,8 @@ class McapReader {
     finish(cut);
     std::string note = intake_.first_loss();
     if (other_joints_ > 0)
-      note += (note.empty() ? "" : "; ") + std::to_string(other_joints_) + " joint states without a position of '" +
-              printable(request_.joints[0]) + "' and '" + printable(request_.joints[1]) + "' (axes of the run file)";
+      note += (note.empty() ? "" : "; ") + std::to_string(other_joints_) + " joint states passed over; the first " +
+              other_joint_ + " (axes: of a run file names them)";
     if (cut > 0) note += (note.empty() ? "" : "; ") + std::string("the recording was not ended");
     return losses_of(intake_, cut, note);
   }
@@ -184,6 +171,7 @@ class McapReader {
   struct Channel {
     std::string topic;
     std::string type;
+    std::string shown;  // for people
     RosEncoding encoding = RosEncoding::kCdr;
     Role role = Role::kOther;
     std::int64_t chunk = 0;   // where the last one with its messages is
@@ -191,12 +179,12 @@ class McapReader {
     std::uint64_t last = 0;
   };
 
-  void take(std::uint8_t kind, std::string_view record) {
-    if (kind == kMessage) return message(record);
-    if (kind == kChunk) return chunk(record);
+  void take(McapKind kind, std::string_view record) {
+    if (kind == McapKind::kMessage) return message(record);
+    if (kind == McapKind::kChunk) return chunk(record);
     Fields fields(record);
     const auto id = fields.number<std::uint16_t>();
-    if (kind == kSchema) {
+    if (kind == McapKind::kSchema) {
       const std::string_view name = fields.text();
       if (!fields.whole() || name.size() > kLongestName) return damage(record.size(), "schema", "has no name");
       schemas_[id] = name;
@@ -212,6 +200,8 @@ class McapReader {
     channel.type = schemas_[schema];
     if (encoding == "ros1") channel.encoding = RosEncoding::kRos1;
     const bool known = encoding == "cdr" || encoding == "ros1";
+    channel.shown = channel.topic + (channel.type.empty() ? "" : " (" + channel.type + ")") +
+                    (known ? "" : " in " + std::string(encoding));
     const std::string& imu = request_.channels.imu.name;
     const std::string& encoder = request_.channels.encoder.name;
     const bool is_imu = known && is_type(channel.type, "sensor_msgs", "Imu");
@@ -259,11 +249,12 @@ class McapReader {
         return intake_.encoder(at->utime, at->angle, record.size(), AtByte(request_.path, byte_));
       }
       if (!request_.need_encoder) {  // the joints of something else
-        ++other_joints_;
+        if (other_joints_++ == 0) other_joint_ = wrong;
         return;
       }
     }
-    if (wrong.empty()) wrong = "has no stamp: its header's is zero";
+    if (wrong.empty())
+      wrong = "has no stamp: its header's is zero, and when it was recorded says nothing of when it was measured";
     damage(record.size(), of.topic, wrong);
   }
 
@@ -292,22 +283,18 @@ class McapReader {
                                                : "";
     std::string_view records;
     if (wrong.empty()) wrong = inflater_.inflate(compression, packed, static_cast<std::size_t>(size), records);
-    if (wrong.empty() && crc != 0 && crc32_of(records) != crc) wrong = "does not have its checksum";
+    if (wrong.empty() && crc != 0 && mcap_crc(records) != crc) wrong = "does not have its checksum";
     if (!wrong.empty())
       return intake_.lose(static_cast<std::int64_t>(record.size()), AtByte(request_.path, byte_)("chunk", wrong));
-    while (records.size() >= kRecordHeader) {
-      const auto kind = static_cast<std::uint8_t>(records[0]);
+    while (records.size() >= kMcapRecordHeader) {
+      const auto kind = static_cast<McapKind>(records[0]);
       const auto length = load_little<std::uint64_t>(records.data() + 1);
-      if (length > records.size() - kRecordHeader) break;
-      if (kind >= kSchema && kind <= kMessage)
-        take(kind, records.substr(kRecordHeader, static_cast<std::size_t>(length)));
-      records.remove_prefix(kRecordHeader + static_cast<std::size_t>(length));
+      if (length > records.size() - kMcapRecordHeader) break;
+      if (kind >= McapKind::kSchema && kind <= McapKind::kMessage)
+        take(kind, records.substr(kMcapRecordHeader, static_cast<std::size_t>(length)));
+      records.remove_prefix(kMcapRecordHeader + static_cast<std::size_t>(length));
     }
     if (!records.empty()) damage(records.size(), "chunk", "ends within a record");
-  }
-
-  static std::uint32_t crc32_of(std::string_view bytes) {
-    return static_cast<std::uint32_t>(::crc32_z(0, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()));
   }
 
   void damage(std::size_t bytes, const std::string& field, const std::string& what) {
@@ -320,14 +307,14 @@ class McapReader {
     for (const auto& [id, channel] : channels_)
       (is_type(channel.type, "sensor_msgs", "Imu") || is_type(channel.type, "sensor_msgs", "JointState") ? readable
                                                                                                          : other)
-          .insert(channel.topic + (channel.type.empty() ? "" : " (" + channel.type + ")"));
+          .insert(channel.shown);
     NameList topics;
     for (const auto* names : {&readable, &other}) {
       for (const std::string& name : *names) topics.add(name);
     }
-    std::string holds = topics.empty() ? "" : "topics " + topics.text();
+    std::string holds = topics.empty() ? "no topics" : "topics " + topics.text();
     const bool empty = intake_.samples() + intake_.encoders() == 0;
-    if (empty && cut > 0) holds += (holds.empty() ? "" : ", and ") + std::string("was cut before their messages");
+    if (empty && cut > 0) holds += ", and was cut there";
     if (empty && !intake_.first_loss().empty()) throw Error(ExitCode::kInput, intake_.first_loss());
     require(request_, intake_, stream_.size(), holds);
   }
@@ -342,129 +329,15 @@ class McapReader {
   std::string encoder_topic_;
   std::int64_t byte_ = 0;  // of the record in the file
   long long other_joints_ = 0;
+  std::string other_joint_;  // what is wrong with the first
 };
 
-/// /imu/data and /joint_states, in chunks that are not compressed.
-class McapWriter final : public LogWriter {
- public:
-  explicit McapWriter(const std::string& path) : path_(path), file_(path) {
-    file_.write(kMagic);
-    std::string header;
-    add_text(header, "ros2");
-    add_text(header, "trunnion");
-    write(kHeader, header);
-    for (const std::uint16_t id : {kImuId, kJointsId}) {
-      std::string schema;
-      append_little(schema, id);
-      add_text(schema, id == kImuId ? "sensor_msgs/msg/Imu" : "sensor_msgs/msg/JointState");
-      add_text(schema, "ros2msg");
-      add_text(schema, id == kImuId ? kRosImuDefinition : kRosJointStateDefinition);
-      write(kSchema, schema);
-      std::string channel;
-      append_little(channel, id);
-      append_little(channel, id);
-      add_text(channel, id == kImuId ? "/imu/data" : "/joint_states");
-      add_text(channel, "cdr");
-      append_little(channel, std::uint32_t{0});  // no metadata
-      write(kChannel, channel);
-    }
-  }
-
-  void imu(std::int64_t utime, const InertialSample<double>& sample) override {
-    check(utime);
-    encode_ros_imu(utime, sample, message_);
-    add(kImuId, samples_++, utime);
-  }
-  [[nodiscard]] bool holds_temperature() const override { return false; }
-  void encoder(std::int64_t utime, double azimuth, double pitch) override {
-    check(utime);
-    encode_ros_joints(utime, joints_, {azimuth, pitch}, message_);
-    add(kJointsId, readings_++, utime);
-  }
-  void commit() override {
-    flush();
-    write(kDataEnd, std::string(4, '\0'));
-    write(kFooter, std::string(20, '\0'));  // no summary
-    file_.write(kMagic);
-    file_.commit();
-  }
-  [[nodiscard]] std::vector<std::string> files() const override { return {path_}; }
-
- private:
-  static constexpr std::uint16_t kImuId = 1;
-  static constexpr std::uint16_t kJointsId = 2;
-
-  static void add_text(std::string& out, std::string_view text) {
-    append_little(out, static_cast<std::uint32_t>(text.size()));
-    out.append(text);
-  }
-  static void add_record(std::string& out, Kind kind, std::string_view content) {
-    out += static_cast<char>(kind);
-    append_little(out, static_cast<std::uint64_t>(content.size()));
-    out.append(content);
-  }
-  void write(Kind kind, std::string_view content) {
-    record_.clear();
-    add_record(record_, kind, content);
-    file_.write(record_);
-  }
-  void check(std::int64_t utime) const {
-    if (utime < 0 || utime / 1000000 > std::numeric_limits<std::int32_t>::max())
-      throw input_error(path_, 0, "", "a stamp of " + std::to_string(utime) + " us: ROS holds 0 to 2147483647 s");
-  }
-  void add(std::uint16_t id, std::uint32_t number, std::int64_t utime) {
-    const auto log_time = static_cast<std::uint64_t>(1000 * utime);
-    record_.clear();
-    append_little(record_, id);
-    append_little(record_, number);
-    append_little(record_, log_time);
-    append_little(record_, log_time);
-    record_.append(message_);
-    add_record(chunk_, kMessage, record_);
-    first_ = std::min(first_, log_time);
-    last_ = std::max(last_, log_time);
-    if (chunk_.size() >= kChunkBytes) flush();
-  }
-  void flush() {
-    if (chunk_.empty()) return;
-    std::string chunk;
-    append_little(chunk, first_);
-    append_little(chunk, last_);
-    append_little(chunk, static_cast<std::uint64_t>(chunk_.size()));
-    append_little(chunk, static_cast<std::uint32_t>(
-                             ::crc32_z(0, reinterpret_cast<const unsigned char*>(chunk_.data()), chunk_.size())));
-    add_text(chunk, "");
-    append_little(chunk, static_cast<std::uint64_t>(chunk_.size()));
-    chunk.append(chunk_);
-    write(kChunk, chunk);
-    chunk_.clear();
-    first_ = std::numeric_limits<std::uint64_t>::max();
-    last_ = 0;
-  }
-
-  std::string path_;
-  std::array<std::string, 2> joints_ = LogRequest().joints;
-  WholeFile file_;
-  std::string message_;
-  std::string record_;
-  std::string chunk_;
-  std::uint64_t first_ = std::numeric_limits<std::uint64_t>::max();
-  std::uint64_t last_ = 0;
-  std::uint32_t samples_ = 0;
-  std::uint32_t readings_ = 0;
-};
-
-bool is_mcap(std::string_view head) { return head.substr(0, kMagic.size()) == kMagic; }
+bool is_mcap(std::string_view head) { return head.substr(0, kMcapMagic.size()) == kMcapMagic; }
 
 LogLosses read_mcap(const LogRequest& request, SampleSink& sink) { return McapReader(request, sink).read(); }
 
 }  // namespace
 
-const LogFormat kMcapFormat = {"mcap",
-                               "MCAP recording",
-                               ".mcap",
-                               is_mcap,
-                               read_mcap,
-                               [](const std::string& path) -> std::unique_ptr<LogWriter> { return std::make_unique<McapWriter>(path); }};
+const LogFormat kMcapFormat = {"mcap", "MCAP recording", ".mcap", is_mcap, read_mcap, write_mcap};
 
 }  // namespace trunnion::io

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "little_endian.hpp"
+#include "log_formats.hpp"
 
 namespace trunnion::io {
 namespace {
@@ -145,6 +146,19 @@ std::optional<RosImu> decode_ros_imu(std::string_view message, RosEncoding encod
   return imu;
 }
 
+namespace {
+
+std::string joint_names(std::string_view message, RosEncoding encoding) {
+  RosFields fields(message, encoding);
+  static_cast<void>(fields.header());
+  NameList names;
+  for (std::uint32_t left = fields.number<std::uint32_t>(); left > 0 && fields.whole(); --left)
+    names.add(std::string(fields.text()));
+  return names.text();
+}
+
+}  // namespace
+
 std::optional<RosAngles> decode_ros_joints(std::string_view message, RosEncoding encoding,
                                            const std::array<std::string, 2>& joints, std::string& wrong) {
   RosFields fields(message, encoding);
@@ -176,7 +190,8 @@ std::optional<RosAngles> decode_ros_joints(std::string_view message, RosEncoding
   if (!fields.whole()) wrong = kCut;
   if (wrong.empty() && !utime) wrong = kNoStamp;
   for (std::size_t i = 0; i < 2 && wrong.empty(); ++i) {
-    if (!there[i]) wrong = "has no position of a joint '" + joints[i] + "'";
+    if (!there[i])
+      wrong = "has no position of a joint '" + printable(joints[i]) + "', but of " + joint_names(message, encoding);
   }
   if (!wrong.empty()) return std::nullopt;
   found.utime = *utime;

@@ -23,6 +23,15 @@ bool ends_in(const std::string& column, std::string_view name) {
   return column.size() == name.size() || column[column.size() - name.size() - 1] == ':';
 }
 
+bool is_outside_quotes(std::string_view line, char wanted) {
+  bool quoted = false;
+  for (const char c : line) {
+    if (c == '"') quoted = !quoted;
+    if (c == wanted && !quoted) return true;
+  }
+  return false;
+}
+
 bool starts_number(const char* p, const char* end) {
   if (p != end && (*p == '+' || *p == '-')) ++p;
   return p != end && ((*p >= '0' && *p <= '9') || *p == '.');
@@ -39,9 +48,9 @@ TextTable::TextTable(const std::string& path, Sha256* digest) : path_(path), tex
   if (std::string_view(text_).substr(0, kByteOrderMark.size()) == kByteOrderMark) next_ += kByteOrderMark.size();
   skip_preamble();
   const std::string_view first = current_line();
-  separator_ = first.find(',') != std::string::npos ? ',' : first.find(';') != std::string::npos ? ';' : ' ';
+  separator_ = is_outside_quotes(first, ',') ? ',' : is_outside_quotes(first, ';') ? ';' : ' ';
   const char* p = first.data();
-  while (p != first.data() + first.size() && (*p == ' ' || *p == '\t')) ++p;
+  while (p != first.data() + first.size() && (*p == ' ' || *p == '\t' || *p == '"')) ++p;
   if (!starts_number(p, first.data() + first.size())) {
     read_header(std::string(first));
     header_line_ = line_ + 1;
@@ -136,29 +145,30 @@ bool TextTable::read_row() {
   for (; found <= last_; ++found) {
     while (p != end_ && (*p == ' ' || (*p == '\t' && separator_ == ' '))) ++p;
     if (p == end_ || *p == '\n' || *p == '\r') break;
-    const char* from = *p == '+' ? p + 1 : p;
+    const bool quoted = *p == '"';
+    if (quoted) ++p;
+    const char* from = p != end_ && *p == '+' ? p + 1 : p;
     const auto [after, error] = std::from_chars(from, end_, cells_[found]);
     const bool number = error == std::errc{};
     p = number ? after : p;
-    if (number && p != end_ && *p == separator_ && separator_ != ' ') {  // as it is almost always
+    if (number && !quoted && p != end_ && *p == separator_ && separator_ != ' ') {  // as it is almost always
       ++p;
       continue;
     }
-    const char* cell_end = p;
-    while (cell_end != end_ && *cell_end != '\n' && *cell_end != '\r' &&
-           *cell_end != (separator_ == ' ' ? '\t' : separator_) && (separator_ != ' ' || *cell_end != ' ')) {
-      ++cell_end;
-    }
+    const char* const cell_end = end_of_cell(p, quoted);
     if (!number || std::string_view(p, static_cast<std::size_t>(cell_end - p)).find_first_not_of(" \t") !=
                        std::string_view::npos) {
       const Column* const column = column_at(found);
       cells_[found] = std::nan("");
       if (column != nullptr && !column->optional && !(column->sparse && cell_end == p)) {
         throw input_error(path_, line_, column->quantity,
-                          "should be a number, is '" + std::string(number ? from : p, cell_end) + "'");
+                          "should be a number, is '" + printable(std::string(number ? from : p, cell_end)) + "'" +
+                              (separator_ != ',' && std::find(p, cell_end, ',') != cell_end
+                                   ? ": a decimal comma, where a point is read"
+                                   : ""));
       }
     }
-    p = cell_end;
+    p = quoted ? end_of_cell(cell_end, false) : cell_end;
     if (p != end_ && *p == separator_ && separator_ != ' ') ++p;
   }
   if (found <= needed_) {
@@ -170,6 +180,17 @@ bool TextTable::read_row() {
   next_ = p;
   skip_rest();
   return true;
+}
+
+const char* TextTable::end_of_cell(const char* p, bool quoted) const {
+  for (; p != end_ && *p != '\n' && *p != '\r'; ++p) {
+    if (quoted && *p == '"' && p + 1 != end_ && p[1] == '"') {  // a quote within
+      ++p;
+    } else if (quoted ? *p == '"' : *p == separator_ || (separator_ == ' ' && *p == '\t')) {
+      break;
+    }
+  }
+  return p;
 }
 
 void TextTable::convert(double* value) {
@@ -239,6 +260,7 @@ const TextTable::Column* TextTable::column_at(std::size_t index) const {
 void TextTable::read_header(const std::string& line) {
   if (separator_ == ' ' && line.find('\t') != std::string::npos) separator_ = '\t';
   std::string name;
+  bool quoted = false;
   const auto end_name = [&] {
     while (!name.empty() && (name.back() == ' ' || name.back() == '\r')) name.pop_back();
     if (!name.empty() && name[0] == '#') name.erase(0, name.find_first_not_of("# "));
@@ -246,7 +268,9 @@ void TextTable::read_header(const std::string& line) {
     name.clear();
   };
   for (const char c : line) {
-    if (c == separator_ || (separator_ == ' ' && c == '\t')) {
+    if (c == '"' && (quoted || name.empty())) {
+      quoted = !quoted;
+    } else if (!quoted && (c == separator_ || (separator_ == ' ' && c == '\t'))) {
       end_name();
     } else if (!(name.empty() && c == ' ')) {
       name += c;
@@ -267,7 +291,7 @@ std::size_t TextTable::find(const std::string& name, const std::string& quantity
     throw input_error(
         path_, header_line_, quantity,
         "no column '" + name + "'" +
-            (names_.empty() ? ": the file has no header" : "; nearest is '" + nearest(name, names_) + "'"));
+            (names_.empty() ? ": the file has no header" : "; nearest is '" + printable(nearest(name, names_)) + "'"));
   }
   if (places.size() > 1)
     throw input_error(path_, header_line_, quantity,
@@ -306,7 +330,7 @@ std::string TextTable::find_by_name(const std::string& quantity, std::size_t& in
   NameList own;
   for (const std::string& name : names_) own.add(name);
   throw input_error(path_, header_line_, quantity,
-                    "no such column: name it one of " + wanted +
+                    "no such column in this header: name it one of " + wanted +
                         ", or map one of its own under columns: in a run file: " + own.text());
 }
 

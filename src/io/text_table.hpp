@@ -74,6 +74,8 @@ class TextTable {
 
   /// The cells of the next line that is no comment. @return false at the end
   bool read_row();
+  /// Its separator, its closing quote, or the end of the line.
+  [[nodiscard]] const char* end_of_cell(const char* p, bool quoted) const;
   void convert(double* value);
   /// Lines above the header, as the programs that export tables write them.
   void skip_preamble();

@@ -68,6 +68,29 @@ TEST_F(ForeignTables, GoneWrong) {
                  read("// Update Rate: 100.0Hz\n// x\nPacketCounter\tGyr_X\n1\t2\n"));
 }
 
+TEST_F(ForeignTables, InQuotes) {
+  read(
+      "\"t_s\",\"gyro_x_rad_s\",\"gyro_y_rad_s\",\"gyro_z_rad_s\",\"place, \"\"here\"\"\",\"accel_x_m_s2\","
+      "\"accel_y_m_s2\",\"accel_z_m_s2\"\r\n"
+      "\"1\",\"0.25\",-0.5,\"0.125\",\"a, \"\"b\"\", c\",1.5,\"-2.25\",\"9.75\"\r\n"
+      "\"+2\",0.25,-0.5,0.125,,1.5,-2.25,\"9.75\" ,x\r\n");
+  EXPECT_THAT(collect_->stamps, ElementsAre(1000000, 2000000));
+  for (const InertialSample<double>& sample : collect_->samples) {
+    EXPECT_EQ(sample.w, kSample.w);
+    EXPECT_EQ(sample.f, kSample.f);
+  }
+  LogRequest mine;
+  mine.columns["t"] = {"Time, s", -1, "s"};
+  const std::string header = "\"Time, s\";gyro_x_rad_s;gyro_y_rad_s;gyro_z_rad_s;accel_x_g;accel_y_g;accel_z_g\n";
+  read(header + "1.5;1;2;3;4;5;6\n", mine);
+  EXPECT_THAT(collect_->stamps, ElementsAre(1500000));
+  EXPECT_REFUSES(ExitCode::kInput, "is '1,5': a decimal comma, where a point is read",
+                 read(header + "1,5;1;2;3;4;5;6\n", mine));
+  EXPECT_REFUSES(ExitCode::kInput, "gyro_y: should be a number, is 'x\"\"y'",
+                 read(header + "1;1;\"x\"\"y\";3;4;5;6\n", mine));
+  EXPECT_REFUSES(ExitCode::kInput, "has no row of numbers", read(header, mine));
+}
+
 TEST_F(ForeignTables, OfTwoInstruments) {
   const std::string row = "5000,1,1,1,0.25,-0.5,0.125,1.5,-2.25,9.75\n";
   const std::string of_b = "B:scaledGyroX,B:scaledGyroY,B:scaledGyroZ,B:scaledAccelX,B:scaledAccelY,B:scaledAccelZ";

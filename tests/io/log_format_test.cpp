@@ -28,13 +28,16 @@ TEST_F(LogFormats, AreToldByTheirContent) {
   EXPECT_REFUSES(ExitCode::kInput, "is empty", format(""));
   EXPECT_REFUSES(ExitCode::kInput, "cannot read", format_of(folder_ / "none"));
   EXPECT_REFUSES(ExitCode::kInput, "not a regular file", format_of("/dev/null"));
+  EXPECT_REFUSES(ExitCode::kInput, "is a folder: name the recording in it", format_of("/"));
 }
 
 TEST_F(LogFormats, SayWhatAFileIsThatIsNone) {
-  for (const auto& [head, words] : {std::pair{std::string("\x1f\x8b\x08\0", 4), "gunzip"},
-                                    std::pair{std::string("#ROSBAG V2.0\n"), "rosbags-convert"},
-                                    std::pair{std::string("SQLite format 3\0", 16), "ros2 bag convert"},
-                                    std::pair{std::string("PK\x03\x04"), "zip"}}) {
+  for (const auto& [head, words] :
+       {std::pair{std::string("\x1f\x8b\x08\0", 4), "gunzip"},
+        std::pair{std::string("#ROSBAG V2.0\n"), "rosbags-convert"},
+        std::pair{std::string("SQLite format 3\0", 16), "ros2 bag convert"},
+        std::pair{std::string("PK\x03\x04"), "zip"}, std::pair{std::string("PAR1\x15\x04"), "Parquet"},
+        std::pair{std::string("<?xml version"), "XML"}, std::pair{std::string("{\"t\": 1"), "JSON"}}) {
     const std::string& text = head;
     EXPECT_REFUSES(ExitCode::kInput, words, read(text + std::string(1000, '\x42')));
   }

@@ -84,6 +84,13 @@ TEST_F(McapRecordings, ThatWasCut) {
   EXPECT_EQ(collect_->samples.size(), 49U);
   EXPECT_EQ(lost.records, 1);
   EXPECT_EQ(read(log).records, 1) << "a recording that was not ended";
+  EXPECT_REFUSES(ExitCode::kInput, "it has no topics, and was cut there", read(mcap_head()));
+}
+
+TEST_F(McapRecordings, OfAnotherEncodingAreNamedWithIt) {
+  EXPECT_REFUSES(ExitCode::kInput, "it has topics /imu (sensor_msgs/msg/Imu) in json",
+                 read(mcap_head() + mcap_schema(1, "sensor_msgs/msg/Imu") + mcap_channel(1, 1, "/imu", "json") +
+                      mcap_message(1, "{}") + mcap_end()));
 }
 
 TEST_F(McapRecordings, WithSeveralTopics) {
@@ -103,7 +110,8 @@ TEST_F(McapRecordings, WithSeveralTopics) {
   LogRequest pan;
   pan.joints = {"pan", "tilt"};
   EXPECT_EQ(read(log + mcap_end(), pan).note,
-            "1 joint states without a position of 'pan' and 'tilt' (axes of the run file)");
+            "1 joint states passed over; the first has no position of a joint 'pan', but of wheel, pitch, azimuth "
+            "(axes: of a run file names them)");
   const std::string again =
       mcap_channel(9, 2, "/other", "cdr") + mcap_message(9, cdr_joints(3, {"pitch", "azimuth"}, {0.1, 0.2}));
   EXPECT_REFUSES(ExitCode::kInput, "more than one: /joint_states and /other", read(log + again + mcap_end()));
@@ -122,7 +130,8 @@ TEST_F(McapRecordings, WithSeveralTopics) {
   EXPECT_REFUSES(ExitCode::kInput, "is of type sensor_msgs/msg/Image in cdr, not sensor_msgs/msg/Imu", read(log, b));
   b.channels.imu.name = "/none";
   EXPECT_REFUSES(ExitCode::kInput,
-                 "it has topics /imu/a (sensor_msgs/msg/Imu), /joint_states (sensor_msgs/msg/JointState), /camera",
+                 "no samples of an IMU on '/none'; it has topics /imu/a (sensor_msgs/msg/Imu), /joint_states "
+                 "(sensor_msgs/msg/JointState), /camera",
                  read(log + mcap_end(), b));
 }
 

@@ -4,11 +4,15 @@
 
 import csv
 import os
+import struct
 import subprocess
 import sys
 
 import numpy
+from mcap.data_stream import ReadDataStream
 from mcap.reader import make_reader
+from mcap.records import Chunk, MessageIndex
+from mcap.stream_reader import get_chunk_data_stream
 from mcap.writer import CompressionType
 from mcap_ros2.decoder import DecoderFactory
 from mcap_ros2.writer import Writer
@@ -123,6 +127,31 @@ read = numpy.array([[m.angular_velocity.x, m.angular_velocity.y, m.angular_veloc
                      m.linear_acceleration.y, m.linear_acceleration.z] for _, m in messages["/imu/data"]])
 hold("our MCAP in mcap-ros2-support",
      (read == values).all() and [t for t, _ in messages["/imu/data"]] == [1000 * int(s) for s in stamps])
+with open("ours.mcap", "rb") as file:
+    reader = make_reader(file, validate_crcs=True)
+    summary = reader.get_summary()
+    hold("its summary", summary is not None and summary.statistics.message_count == 2 * N
+         and summary.statistics.message_start_time == 1000 * int(stamps[0])
+         and summary.statistics.message_end_time == 1000 * int(stamps[-1])
+         and {c.topic: summary.statistics.channel_message_counts[i] for i, c in summary.channels.items()}
+         == {"/imu/data": N, "/joint_states": N}
+         and len(summary.chunk_indexes) == summary.statistics.chunk_count > 1)
+    some = [m.log_time for _, _, m in reader.iter_messages(topics=["/imu/data"], starting_at=1000 * int(stamps[1000]),
+                                                          ending_before=1000 * int(stamps[1010]))]
+    hold("ten samples by its index", some == [1000 * int(s) for s in stamps[1000:1010]])
+    found = {}  # of each message, through the indices: its stamp there, and its own
+    for chunk_index in summary.chunk_indexes:
+        file.seek(chunk_index.chunk_start_offset + 9)
+        chunk = get_chunk_data_stream(Chunk.read(ReadDataStream(file)))[0].read(chunk_index.uncompressed_size)
+        hold_here = file.tell() == chunk_index.chunk_start_offset + chunk_index.chunk_length
+        for channel, offset in chunk_index.message_index_offsets.items():
+            file.seek(offset + 9)
+            for stamped, place in MessageIndex.read(ReadDataStream(file)).records:
+                owner, _, log_time = struct.unpack_from("<HIQ", chunk, place + 9)
+                hold_here = hold_here and owner == channel and log_time == stamped
+                found[channel] = found.get(channel, 0) + 1
+        hold_here or sys.exit("FAILED: an index of our MCAP")
+    hold("all through its indices", sorted(found.values()) == [N, N])
 hold("its joints", all(list(m.name) == ["azimuth", "pitch"] and (numpy.array(m.position) == a).all()
                        for (_, m), a in zip(messages["/joint_states"], angles)))
 
