@@ -8,15 +8,27 @@
 #include <cstdio>
 #include <exception>
 
+#include "trunnion/io/whole_file.hpp"
+
 namespace trunnion::app {
 namespace {
 
 volatile std::sig_atomic_t signalled = 0;
 void on_signal(int) { signalled = 1; }
 
+/// The program ends as it would have; of its outputs nothing is left that is not whole.
+void on_end(int signal) {
+  io::remove_unfinished();
+  static_cast<void>(std::signal(signal, SIG_DFL));
+  static_cast<void>(std::raise(signal));
+}
+
 }  // namespace
 
 ExitCode run_program(CLI::App& app, std::vector<std::string> arguments, const std::function<ExitCode()>& run) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    if (std::signal(signal, on_end) == SIG_IGN) static_cast<void>(std::signal(signal, SIG_IGN));  // as nohup wants it
+  }
   const std::string name = app.get_name();
   ExitCode code = ExitCode::kDone;
   try {

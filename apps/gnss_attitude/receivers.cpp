@@ -14,9 +14,9 @@
 namespace trunnion::app {
 namespace {
 
-constexpr double kBackwards = 10.0;             // s, and more ahead is no time to believe
-constexpr std::size_t kMostWaiting = 16;        // epochs of an antenna
-constexpr double kMeets = 0.005;                // s, within which receivers' epochs are one
+constexpr double kBackwards = 10.0;       // s, and more ahead is no time to believe
+constexpr std::size_t kMostWaiting = 16;  // epochs of an antenna
+constexpr double kMeets = 0.005;          // s, within which receivers' epochs are one
 
 std::string time_text(const GpsTime& time) {
   char text[64];

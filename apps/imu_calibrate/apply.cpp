@@ -89,16 +89,16 @@ long long apply_to_log(const io::RecordingFiles& files, const io::LogChannels& c
 }
 
 /// Through the same reader as solve: columns and raw counts as the run file says.
-long long apply_to_table(const Options& o, const io::RunFile& run, const io::RecordingFiles& files,
-                         const InertialUnit<double>& unit) {
-  const std::unique_ptr<io::LogWriter> out = io::format_by_name("csv").write(o.output);
+long long apply_to_recording(const Options& o, const io::LogFormat& format, const io::RunFile& run,
+                             const io::RecordingFiles& files, const InertialUnit<double>& unit) {
+  const std::unique_ptr<io::LogWriter> out = format.write(o.output);
   Corrected sink(unit, *out);
   std::vector<std::pair<std::string, std::string>> digests;
   const io::LogLosses losses = io::read_recording(run, files, sink, digests);
   if (sink.samples() == 0) throw io::input_error(o.input, 0, "", "has no samples");
   if (unit.thermal.order() > 0 && !sink.has_temperature())
-    std::fprintf(stderr, "%s: has terms of temperature, and the table has none (temperature_deg_c): at %s degC\n",
-                 o.calibration.c_str(), figure(unit.thermal.reference, 4).c_str());
+    std::fprintf(stderr, "%s: has terms of temperature, and no sample states one: at %s degC\n", o.calibration.c_str(),
+                 figure(unit.thermal.reference, 4).c_str());
   out->commit();
   say_losses(losses);
   return sink.samples();
@@ -110,16 +110,14 @@ void apply(const Options& o) {
   std::vector<std::string> sources = files_of(run);
   sources.insert(sources.end(), {o.input, o.calibration});
   keep_inputs(o.output, sources);
-  const io::LogFormat& format = io::format_of(files.name());
-  const bool is_log = !files.log.empty() && format.by_channel;
-  if (std::filesystem::path(o.output).extension() != (is_log ? ".lcm" : ".csv"))
-    throw Error(ExitCode::kUsage, o.output + (is_log ? ": a corrected LCM log is a .lcm"
-                                                     : std::string(": a corrected ") + format.title + " is a .csv"));
-  if (!is_log) keep_inputs(io::encoder_table_of(o.output), sources);
+  const io::LogFormat& format = format_to_write(o.output, "");
+  if (format.encoder_file != nullptr) keep_inputs(format.encoder_file(o.output), sources);
+  // from log to log of a bus the other channels go along
+  const bool is_log = !files.log.empty() && format.by_channel && io::format_of(files.name()).by_channel;
   long long samples = 0;
   if (!is_log) {
     const InertialUnit<double> unit = io::unit_of(io::read_calibration_file(o.calibration), o.calibration, o.recording);
-    samples = apply_to_table(o, run, files, unit);
+    samples = apply_to_recording(o, format, run, files, unit);
   } else {
     CorrectorOptions options;
     options.calibration = o.calibration;
@@ -134,7 +132,7 @@ void apply(const Options& o) {
 }  // namespace
 
 void add_apply(CLI::App& app, ExitCode& exit_code) {
-  CLI::App* command = app.add_subcommand("apply", "Write a corrected log: LCM to LCM, anything else to CSV");
+  CLI::App* command = app.add_subcommand("apply", "Write a corrected log, in the format of its extension");
   auto o = std::make_shared<Options>();
   command->add_option("calibration", o->calibration, "Calibration file")->required();
   command
@@ -144,8 +142,8 @@ void add_apply(CLI::App& app, ExitCode& exit_code) {
       ->required();
   command
       ->add_option("-o,--output", o->output,
-                   "Corrected file to write; other channels of an LCM log are copied, encoders of another log go to "
-                   "NAME_encoder.csv")
+                   "Corrected file to write, .csv, .lcm or .mcap; from an LCM log to another the other channels go "
+                   "along, beside a table the encoders go to NAME_encoder.csv")
       ->required();
   command->add_option("--channel", o->channel,
                       "Channel or topic of the unit; default IMU in an LCM log; else the only one");

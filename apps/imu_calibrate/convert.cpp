@@ -22,6 +22,7 @@ struct Options {
   std::string output;
   std::string format;
   std::string channel;
+  std::string encoder_channel;
   int of_run = 0;
 };
 
@@ -79,22 +80,13 @@ class Converted final : public SampleSink {
   std::int64_t last_ = 0;
 };
 
-/// By the name that is stated, else by the extension of the output. @throws Error (usage)
-const io::LogFormat& format_to_write(const Options& o) {
-  if (!o.format.empty()) return io::format_by_name(o.format);
-  std::string writable;
-  for (const io::LogFormat& format : io::log_formats()) {
-    if (format.write == nullptr) continue;
-    if (std::filesystem::path(o.output).extension() == format.extension) return format;
-    writable += std::string(writable.empty() ? "" : ", ") + format.extension;
-  }
-  throw Error(ExitCode::kUsage, o.output + ": no format that is written has this extension (" + writable +
-                                    "): rename it, or state --format");
-}
-
 void convert(const Options& o) {
-  const io::LogFormat& format = format_to_write(o);
+  const io::LogFormat& format = format_to_write(o.output, o.format);
   auto [run, files] = one_recording(o.input, o.channel, o.of_run);
+  if (!o.encoder_channel.empty()) {
+    if (is_run_file(o.input)) throw Error(ExitCode::kUsage, "--encoder-channel: the run file names its channels");
+    run.channels.encoder.name = o.encoder_channel;
+  }
   std::vector<std::string> sources = files_of(run);
   sources.insert(sources.end(), {o.input});
   keep_inputs(o.output, sources);
@@ -160,6 +152,8 @@ void add_convert(CLI::App& app, ExitCode& exit_code) {
   command->add_option(
       "--channel", o->channel,
       "Channel or topic of the unit; default IMU in an LCM log; else the only one, in a ULog sensor_combined");
+  command->add_option("--encoder-channel", o->encoder_channel,
+                      "... of the encoders; default ENCODER in an LCM log, else the only one");
   command->add_option("--of-run", o->of_run, "Of a run file with several: the recording to convert, from 1")
       ->check(CLI::Range(1, 1000));
   command->footer("Example:\n  imu_calibrate convert recording.mcap -o recording.lcm");

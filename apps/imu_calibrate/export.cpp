@@ -2,12 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include <algorithm>
+#include <array>
 #include <cinttypes>
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <memory>
+#include <string_view>
 
 #include "../imu_correct/corrector.hpp"
 #include "../terminal.hpp"
@@ -17,6 +20,7 @@
 #include "trunnion/error_model/flash_block.hpp"
 #include "trunnion/io/calibration_file.hpp"
 #include "trunnion/io/digest.hpp"
+#include "trunnion/io/export_format.hpp"
 #include "trunnion/io/fault.hpp"
 #include "trunnion/io/sensor_sheet.hpp"
 #include "trunnion/io/whole_file.hpp"
@@ -297,11 +301,7 @@ void export_calibration(const Options& o) {
   if (o.output.empty() && o.block.empty())
     throw Error(ExitCode::kUsage, "export: name an --output, a --block, or both");
   if (!o.output.empty() && o.output == o.block) throw Error(ExitCode::kUsage, "--output and --block are the same file");
-  for (const std::string& output : {o.output, o.block}) {
-    if (!output.empty())
-      keep_inputs(output, o.sheet.empty() ? std::vector<std::string>{o.calibration}
-                                          : std::vector<std::string>{o.calibration, o.sheet});
-  }
+  if (!o.block.empty()) keep_inputs(o.block, {o.calibration, o.sheet});
   const std::string digest = io::sha256(io::read_whole(o.calibration));
   const Content content = content_of(io::read_calibration_file(o.calibration), o);
   if (!o.output.empty()) {
@@ -315,21 +315,45 @@ void export_calibration(const Options& o) {
   }
 }
 
+/// The extension of what another format writes: a --format that was forgotten.
+void check_extension(const std::string& output, const std::string& format) {
+  const std::string extension = std::filesystem::path(output).extension().string();
+  const std::vector<io::ExportFormat>& others = io::export_formats();
+  const bool header = extension == ".hpp" || extension == ".h";
+  const bool of_another = std::any_of(others.begin(), others.end(),
+                                      [&](const io::ExportFormat& other) { return extension == other.extension; });
+  if (format == "c" ? of_another : header)
+    throw Error(ExitCode::kUsage, output + ": --format " + format + " writes no " + extension);
+}
+
+/// What no namespace can be called: the words of C++17.
+constexpr std::array<std::string_view, 73> kCppWords = {
+    "alignas",  "alignof",  "and",     "and_eq",  "asm",       "auto",      "bitand",       "bitor",     "bool",
+    "break",    "case",     "catch",   "char",    "class",     "compl",     "const",        "constexpr", "const_cast",
+    "continue", "decltype", "default", "delete",  "do",        "double",    "dynamic_cast", "else",      "enum",
+    "explicit", "export",   "extern",  "false",   "float",     "for",       "friend",       "goto",      "if",
+    "inline",   "int",      "long",    "mutable", "namespace", "new",       "noexcept",     "not",       "not_eq",
+    "nullptr",  "operator", "or",      "or_eq",   "private",   "protected", "public",       "register",  "return",
+    "short",    "signed",   "sizeof",  "static",  "struct",    "switch",    "template",     "this",      "throw",
+    "true",     "try",      "typedef", "union",   "unsigned",  "using",     "virtual",      "void",      "volatile",
+    "while"};
+
 /// A C++ name, by parts.
 std::string is_namespace(const std::string& text) {
-  bool start = true;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const auto c = static_cast<unsigned char>(text[i]);
-    if (!start && text.compare(i, 2, "::") == 0) {
-      start = true;
-      ++i;
-      continue;
-    }
-    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
-    if (!letter && (start || c < '0' || c > '9')) return "should be a C++ namespace";
-    start = false;
+  std::string_view rest(text);
+  for (bool more = true; more;) {
+    const std::size_t end = rest.find("::");
+    const std::string_view part = rest.substr(0, end);
+    more = end != std::string_view::npos;
+    rest.remove_prefix(more ? end + 2 : rest.size());
+    const bool named =
+        !part.empty() && (part[0] < '0' || part[0] > '9') && std::all_of(part.begin(), part.end(), [](char c) {
+          return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+        });
+    if (!named || std::find(kCppWords.begin(), kCppWords.end(), part) != kCppWords.end())
+      return "should be a C++ namespace";
   }
-  return start ? "should be a C++ namespace" : "";
+  return "";
 }
 
 }  // namespace
@@ -400,6 +424,8 @@ void add_export(CLI::App& app, ExitCode& exit_code) {
     if (o->format != "px4" && o->format != "ardupilot") {
       for (const CLI::Option* option : of_vehicles) refuse(option, "px4 or ardupilot");
     }
+    if (!o->output.empty()) keep_inputs(o->output, {o->calibration, o->sheet});
+    check_extension(o->output, o->format);
     if (o->format == "c") {
       export_calibration(*o);
     } else {
@@ -409,7 +435,6 @@ void add_export(CLI::App& app, ExitCode& exit_code) {
       target.output = o->output;
       target.sheet = o->sheet;
       target.recording = o->recording;
-      keep_inputs(o->output, {o->calibration, o->sheet});
       export_to_target(target);
     }
     exit_code = ExitCode::kDone;

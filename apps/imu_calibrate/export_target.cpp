@@ -3,9 +3,12 @@
 
 #include "export_target.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cctype>
 #include <cstdio>
 #include <filesystem>
+#include <string_view>
 
 #include "../terminal.hpp"
 #include "trunnion/core/error.hpp"
@@ -19,14 +22,21 @@
 namespace trunnion::app {
 namespace {
 
+constexpr std::array<std::string_view, 23> kMatlabWords = {
+    "break",    "case",           "catch", "classdef",  "continue", "do",         "else",   "elseif", "end",    "for",
+    "function", "global",         "if",    "otherwise", "parfor",   "persistent", "return", "spmd",   "switch", "try",
+    "until",    "unwind_protect", "while"};
+
 /// MATLAB calls a function by the name of its file.
 std::string function_of(const std::string& output) {
   std::string stem = std::filesystem::path(output).stem().string();
   bool is_name = !stem.empty() && std::isalpha(static_cast<unsigned char>(stem[0])) != 0 && stem.size() < 64;
   for (const char c : stem) is_name = is_name && (std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_');
-  if (!is_name)
-    throw Error(ExitCode::kUsage,
-                output + ": MATLAB calls a function by its file: letters, digits and _, a letter first");
+  is_name = is_name && std::find(kMatlabWords.begin(), kMatlabWords.end(), stem) == kMatlabWords.end();
+  if (!is_name || std::filesystem::path(output).extension() != ".m")
+    throw Error(ExitCode::kUsage, output +
+                                      ": MATLAB calls a function by its file: a .m of letters, digits and _, a letter "
+                                      "first, no word of the language");
   return stem;
 }
 

@@ -155,10 +155,15 @@ class InspectSink final : public SampleSink {
  private:
   static void add_parts(const calibration::HandRecording& parts, Json& json) {
     double at_rest = 0.0;
-    for (const calibration::Rest& rest : parts.rests) at_rest += rest.end - rest.begin;
+    double force = 0.0;
+    for (const calibration::Rest& rest : parts.rests) {
+      at_rest += rest.end - rest.begin;
+      force += rest.mean.f.norm() / static_cast<double>(parts.rests.size());
+    }
     json["rests"] = {{"count", parts.rests.size()}, {"total_s", at_rest}};
     json["turns"] = {{"count", parts.turns.size()}};
     if (parts.rests.empty()) return;
+    json["rests"]["specific_force_m_s2"] = force;
     json["noise_at_rest"] = {{"gyro_deg_per_h_per_rt_hz", parts.noise.gyro.density / kRadPerSPerDegPerH},
                              {"accel_ug_per_rt_hz", parts.noise.accel.density / kMetresPerS2PerMicroG}};
   }
@@ -223,6 +228,9 @@ void print_text(const Json& all) {
     if (one.contains("rests")) {
       std::printf("  %lld rests, %.1f s in all; %lld turns between them\n", one["rests"]["count"].get<long long>(),
                   one["rests"]["total_s"].get<double>(), one["turns"]["count"].get<long long>());
+      const double force = one["rests"].value("specific_force_m_s2", kStandardGravity);
+      if (std::abs(force / kStandardGravity - 1.0) > 0.1)
+        std::printf("  specific force at rest: %.4g m/s^2: no gravity; another unit?\n", force);
     }
     if (one.contains("noise_at_rest")) {
       std::printf("  white noise at rest: %.3g deg/h/rtHz, %.3g ug/rtHz\n",

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the trunnion authors
 // SPDX-License-Identifier: BSD-3-Clause
 
+#include <cstdio>
 #include <utility>
 
 #include "../program.hpp"
@@ -32,6 +33,12 @@ ExitCode run_command(std::vector<std::string> arguments) {
   add_allan(app, exit_code);
   add_trials(app, exit_code);
   add_demo(app, exit_code);
+  const std::string command = arguments.empty() || arguments.front().rfind('-', 0) == 0 ? "" : arguments.front();
+  const auto is_it = [&](const CLI::App* one) { return one->check_name(command); };
+  if (!command.empty() && app.get_subcommands(is_it).empty()) {
+    std::fprintf(stderr, "imu_calibrate: no command '%s'; --help lists them\n", command.c_str());
+    return ExitCode::kUsage;
+  }
   return run_program(app, std::move(arguments), [&] { return exit_code; });
 }
 

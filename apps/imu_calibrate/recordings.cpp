@@ -83,8 +83,9 @@ OneRecording one_recording(const std::string& input, const std::string& channel,
     one.run = io::read_run_file(input);
     const int recordings = static_cast<int>(one.run.recordings.size());
     if (of_run > recordings || (of_run == 0 && recordings > 1))
-      throw Error(ExitCode::kUsage,
-                  input + ": has " + std::to_string(recordings) + " recordings: choose one with --of-run");
+      throw Error(ExitCode::kUsage, input + ": has " + std::to_string(recordings) +
+                                        " recordings: choose one with --of-run 1" +
+                                        (recordings > 1 ? " to " + std::to_string(recordings) : ""));
     if (!channel.empty()) throw Error(ExitCode::kUsage, "--channel: the run file names its channels");
     one.files = one.run.recordings[static_cast<std::size_t>(std::max(1, of_run) - 1)];
   } else {
@@ -95,7 +96,21 @@ OneRecording one_recording(const std::string& input, const std::string& channel,
   return one;
 }
 
+const io::LogFormat& format_to_write(const std::string& output, const std::string& stated) {
+  if (!stated.empty()) return io::format_by_name(stated);
+  std::string writable;
+  for (const io::LogFormat& format : io::log_formats()) {
+    if (format.write == nullptr) continue;
+    if (std::filesystem::path(output).extension() == format.extension) return format;
+    writable += std::string(writable.empty() ? "" : ", ") + format.extension;
+  }
+  throw Error(ExitCode::kUsage, output + ": no format that is written has this extension (" + writable + ")");
+}
+
 void say_losses(const io::LogLosses& losses) {
+  if (losses.samples > 0)
+    std::fprintf(stderr, "%lld samples were lost before they were recorded, as their sequence numbers say\n",
+                 losses.samples);
   if (losses.records > 0)
     std::fprintf(stderr, "%lld damaged records, %lld bytes passed over\n", losses.records, losses.bytes);
   if (!losses.note.empty()) std::fprintf(stderr, "note: %s\n", losses.note.c_str());

@@ -42,6 +42,9 @@ struct OneRecording {
 /// @param channel of the log; empty: the default. @throws Error (usage, input)
 OneRecording one_recording(const std::string& input, const std::string& channel, int of_run);
 
+/// Of the name that is stated, else by the extension of the output. @throws Error (usage)
+const io::LogFormat& format_to_write(const std::string& output, const std::string& stated);
+
 /// On standard error: what was damaged, and what else was not read.
 void say_losses(const io::LogLosses& losses);
 

@@ -335,6 +335,8 @@ ExitCode report_of(const Options& o) {
   if (format.empty()) {
     const std::string extension = std::filesystem::path(o.output).extension().string();
     format = extension == ".md" ? "markdown" : extension == ".json" ? "json" : "html";
+    if (format == "html" && extension != ".html" && !o.output.empty())
+      throw Error(ExitCode::kUsage, o.output + ": a report is a .html, .md or .json; or state --format");
   }
   const io::RunFile run = io::read_run_file(o.run);
   if (run.rig.empty()) throw Error(ExitCode::kInput, o.run + ": a report is of a table run: this run has no rig");

@@ -13,6 +13,8 @@
 #include "result.hpp"
 #include "trunnion/calibration/model_choice.hpp"
 #include "trunnion/calibration/multi_position_solve.hpp"
+#include "trunnion/core/earth.hpp"
+#include "trunnion/core/units.hpp"
 #include "trunnion/io/calibration_file.hpp"
 #include "trunnion/io/urdf.hpp"
 #include "trunnion/io/whole_file.hpp"
@@ -70,6 +72,20 @@ void look_for_higher_orders(const std::vector<calibration::TableRecording>& reco
         run.temperature, kMost, figure(gain, 4).c_str(), figure(asked, 3).c_str());
 }
 
+/// The Earth's rate about gravity, taken with the wrong sign of the latitude, is off by 2 W sin(latitude): to the gyros
+/// a g-sensitivity that is alike on all axes.
+void look_for_other_hemisphere(const io::RunFile& run, const CalibrationRecord& record) {
+  const Vec3<double> found = record.value.unit.g_sensitivity.diagonal();
+  const double sigma = record.sigma.unit.g_sensitivity.diagonal().maxCoeff();
+  const double sought = -2.0 * kEarthRate * std::sin(run.site.latitude) / record.value.gravity;
+  if (!(sigma > 0.0) || std::abs(sought) < 10.0 * sigma) return;
+  if ((found.array() - sought).abs().maxCoeff() > 0.5 * std::abs(sought)) return;  // nearer to it than to none
+  std::fprintf(stderr,
+               "%s: site.latitude_deg: the gyros' g-sensitivity is alike on all axes, as the other sign of the "
+               "latitude makes it: is it %s?\n",
+               run.path.c_str(), figure(-run.site.latitude / kRadPerDeg, 6).c_str());
+}
+
 calibration::Solution solve_on_table(const io::RunFile& run, RunInputs& inputs, std::vector<std::string>& mounts,
                                      bool choose) {
   mounts = mounts_of(run);
@@ -122,11 +138,8 @@ ExitCode solve(const Options& o) {
   std::vector<double> held_out;
   calibration::Solution solution = run.rig.empty() ? solve_hand(run, inputs, o.hold_out, held_out)
                                                    : solve_on_table(run, inputs, file.mounts, o.model == "auto");
-  if (inputs.losses.samples > 0) {
-    std::fprintf(stderr, "%lld samples were lost before they were recorded, as their sequence numbers say\n",
-                 inputs.losses.samples);
-  }
   say_losses(inputs.losses);
+  look_for_other_hemisphere(run, solution.record);
   file = calibration_of(run, solution, inputs, file.mounts);
   if (!o.output.empty()) io::write_whole(o.output, io::to_yaml(file));
   if (o.format == "json") {

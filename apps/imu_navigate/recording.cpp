@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <filesystem>
 
 #include "../terminal.hpp"
 #include "trunnion/core/units.hpp"
@@ -240,6 +241,10 @@ void judge_magnitude(const RecordingSource& source, Recording& recording) {
 Recording read_recording(const RecordingSource& source) {
   Recording recording;
   Collector collector(source.log, recording);
+  const std::string extension = std::filesystem::path(source.log).extension().string();
+  if (extension == ".yaml" || extension == ".yml")
+    throw Error(ExitCode::kUsage,
+                source.log + ": is a run file: imu_calibrate convert makes a log of a recording of it");
   if (io::format_of(source.log).by_channel) {
     read_log(source, collector, recording);
   } else {

@@ -14,6 +14,7 @@
 #include "trunnion/bus/replay.hpp"
 #include "trunnion/core/error.hpp"
 #include "trunnion/io/fault.hpp"
+#include "trunnion/io/log_format.hpp"
 
 namespace trunnion::app {
 namespace {
@@ -39,6 +40,9 @@ ExitCode replay(const Options& o) {
   } catch (const std::regex_error& e) {
     throw Error(ExitCode::kUsage, "--regexp '" + o.pattern + "': " + e.what());
   }
+  if (const io::LogFormat& format = io::format_of(o.log); !format.by_channel)
+    throw io::input_error(o.log, 0, "",
+                          std::string("is a ") + format.title + ": imu_calibrate convert makes an LCM log of it");
   io::LcmLogReader log(o.log);
   bus::Connection connection(o.url);
   if (o.lossless && !connection.lossless())

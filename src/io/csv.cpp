@@ -199,14 +199,13 @@ class CsvWriter final : public LogWriter {
     readings_->write(row_);
   }
   void commit() override {
-    if (readings_) readings_->commit();
-    try {
-      samples_.commit();
-    } catch (...) {
-      std::error_code ignored;
-      if (readings_) std::filesystem::remove(encoder_path_, ignored);  // both, or neither
-      throw;
+    if (readings_) {
+      readings_->settle();
+      samples_.settle();
+      samples_.remove_old();  // killed here, one half is missing: better than of another recording
+      readings_->commit();
     }
+    samples_.commit();
   }
   [[nodiscard]] std::vector<std::string> files() const override {
     return readings_ ? std::vector<std::string>{path_, encoder_path_} : std::vector<std::string>{path_};

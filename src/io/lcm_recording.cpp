@@ -162,7 +162,11 @@ LogLosses read_lcm_recording(const LogRequest& request, SampleSink& sink) {
   LcmEvent event;
   long long events = 0;
   std::set<std::string, std::less<>> others;
+  long long lost = 0;  // before a record that is whole: what follows the last was cut
+  std::int64_t damage = 0;
   while (log.next(event)) {
+    if (lost == 0) damage = event.byte;
+    lost = log.lost_bytes();
     if (event.channel == imu) {
       decoder.imu(event);
     } else if (event.channel == encoder) {
@@ -173,7 +177,9 @@ LogLosses read_lcm_recording(const LogRequest& request, SampleSink& sink) {
     if (request.progress && ++events % kEventsPerProgress == 0)
       request.progress(static_cast<double>(event.byte) / static_cast<double>(log.size()));
   }
-  decoder.finish();
+  if (lost > 0)
+    decoder.lose(lost, input_error_at_byte(request.path, damage, "", "before it is what belongs to no record"));
+  decoder.finish(log.size());
   std::string others_named;
   for (const std::string& name : others)
     others_named += (others_named.empty() ? "; other channels: " : ", ") + printable(name);

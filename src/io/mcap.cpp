@@ -223,7 +223,8 @@ class McapReader {
     if (!claimed.empty() && claimed != topic)
       throw input_error(request_.path, 0, "",
                         "has more than one: " + printable(claimed) + " and " + printable(topic) +
-                            "; name one under channels: {" + key + ": ...}, or with --channel");
+                            "; name one under channels: {" + key + ": ...}, or with " +
+                            (std::string(key) == "imu" ? "--channel" : "--encoder-channel"));
     claimed = topic;
   }
 

@@ -17,6 +17,8 @@
 namespace trunnion::io {
 namespace {
 
+constexpr std::size_t kMostColumns = 4096;
+
 /// Whether a column is of that name, alone or after the name of its instrument and a colon.
 bool ends_in(const std::string& column, std::string_view name) {
   if (column.size() < name.size() || column.compare(column.size() - name.size(), name.size(), name) != 0) return false;
@@ -94,15 +96,9 @@ void TextTable::choose(const std::vector<std::string>& quantities, const ColumnM
 }
 
 bool TextTable::row(double* value) {
+  const auto sparse = std::count_if(columns_.begin(), columns_.end(), [](const Column& c) { return c.sparse; });
   while (read_row()) {
-    std::size_t empty = 0;
-    std::size_t sparse = 0;
-    for (const Column& column : columns_) {
-      if (!column.sparse) continue;
-      ++sparse;
-      if (std::isnan(cells_[column.index])) ++empty;
-    }
-    if (empty > 0 && empty == sparse) continue;  // a row of something else
+    if (sparse > 0 && empty_ == sparse) continue;  // a row of something else
     convert(value);
     return true;
   }
@@ -142,10 +138,13 @@ bool TextTable::read_row() {
   ++line_;
   const char* p = next_;
   std::size_t found = 0;
+  empty_ = 0;
+  bool after_separator = false;
   for (; found <= last_; ++found) {
     while (p != end_ && (*p == ' ' || (*p == '\t' && separator_ == ' '))) ++p;
-    if (p == end_ || *p == '\n' || *p == '\r') break;
-    const bool quoted = *p == '"';
+    if (!after_separator && (p == end_ || *p == '\n' || *p == '\r')) break;
+    after_separator = false;
+    const bool quoted = p != end_ && *p == '"';
     if (quoted) ++p;
     const char* from = p != end_ && *p == '+' ? p + 1 : p;
     const auto [after, error] = std::from_chars(from, end_, cells_[found]);
@@ -153,6 +152,7 @@ bool TextTable::read_row() {
     p = number ? after : p;
     if (number && !quoted && p != end_ && *p == separator_ && separator_ != ' ') {  // as it is almost always
       ++p;
+      after_separator = true;
       continue;
     }
     const char* const cell_end = end_of_cell(p, quoted);
@@ -160,7 +160,10 @@ bool TextTable::read_row() {
                        std::string_view::npos) {
       const Column* const column = column_at(found);
       cells_[found] = std::nan("");
-      if (column != nullptr && !column->optional && !(column->sparse && cell_end == p)) {
+      const bool empty = !number && cell_end == p;
+      if (column != nullptr && column->sparse && empty) {
+        ++empty_;
+      } else if (column != nullptr && !column->optional) {
         throw input_error(path_, line_, column->quantity,
                           "should be a number, is '" + printable(std::string(number ? from : p, cell_end)) + "'" +
                               (separator_ != ',' && std::find(p, cell_end, ',') != cell_end
@@ -169,7 +172,8 @@ bool TextTable::read_row() {
       }
     }
     p = quoted ? end_of_cell(cell_end, false) : cell_end;
-    if (p != end_ && *p == separator_ && separator_ != ' ') ++p;
+    after_separator = p != end_ && *p == separator_ && separator_ != ' ';
+    if (after_separator) ++p;
   }
   if (found <= needed_) {
     throw input_error(
@@ -179,6 +183,10 @@ bool TextTable::read_row() {
   for (; found <= last_; ++found) cells_[found] = std::nan("");
   next_ = p;
   skip_rest();
+  const auto* feed = static_cast<const char*>(std::memchr(p, '\r', static_cast<std::size_t>(next_ - p)));
+  while (feed != nullptr && feed != next_ && *feed == '\r') ++feed;
+  if (feed != nullptr && feed != next_ && *feed != '\n')
+    throw input_error(path_, line_, "", "has a carriage return within: lines should end in a line feed");
   return true;
 }
 
@@ -277,6 +285,8 @@ void TextTable::read_header(const std::string& line) {
     }
   }
   end_name();
+  if (names_.size() > kMostColumns)
+    throw input_error(path_, line_ + 1, "", "has more than " + std::to_string(kMostColumns) + " columns");
 }
 
 std::size_t TextTable::find(const std::string& name, const std::string& quantity) const {
@@ -284,9 +294,14 @@ std::size_t TextTable::find(const std::string& name, const std::string& quantity
   for (std::size_t i = 0; i < names_.size(); ++i) {
     if (ends_in(names_[i], name)) places.push_back(i);
   }
-  const auto whole =
-      std::find_if(places.begin(), places.end(), [&](std::size_t i) { return names_[i].size() == name.size(); });
-  if (whole != places.end()) return *whole;
+  const auto is_whole = [&](std::size_t i) { return names_[i].size() == name.size(); };
+  const auto whole = std::find_if(places.begin(), places.end(), is_whole);
+  if (whole != places.end()) {
+    const bool repeats = quantity == "t" || quantity == kWeek;  // once more beside each instrument
+    if (!repeats && std::count_if(places.begin(), places.end(), is_whole) > 1)
+      throw input_error(path_, header_line_, quantity, "is there twice, as '" + name + "'");
+    return *whole;
+  }
   if (places.empty()) {
     throw input_error(
         path_, header_line_, quantity,

@@ -102,6 +102,7 @@ class TextTable {
   std::size_t last_ = 0;
   std::size_t needed_ = 0;
   bool sparse_ = false;
+  std::ptrdiff_t empty_ = 0;  // cells of sparse columns in the last row
   double microseconds_ = 0.0;
   long long line_ = 0;
 };

@@ -172,6 +172,9 @@ class UlogReader {
       if (!own->empty()) note += (note.empty() ? "the vehicle's own " : ", ") + own->text();
     }
     if (!note.empty()) note += " are in its units' readings";
+    if (without_force_ > 0)
+      note += (note.empty() ? "" : "; ") + std::to_string(without_force_) +
+              " samples of the gyros without one of the accelerometers are passed over";
     if (dropouts_ > 0)
       note += (note.empty() ? "" : "; ") + std::to_string(dropouts_) + " dropouts of the logger, " +
               std::to_string(dropped_ms_) + " ms in all";
@@ -230,6 +233,8 @@ class UlogReader {
     } else if (kind == 'O' && content.size() >= 2) {
       ++dropouts_;
       dropped_ms_ += load_little<std::uint16_t>(content.data());
+    } else if (kind == 'R' && content.size() >= 2) {
+      if (number_ == load_little<std::uint16_t>(content.data())) number_.reset();
     } else if (kind == 'B') {
       flags(content);
     } else if (kind == 'A' && content.size() > 3) {
@@ -279,12 +284,13 @@ class UlogReader {
 
   void subscribe(const std::string& instance, std::uint16_t number, const std::string& topic) {
     topics_.insert(topic + (instance == "0" ? "" : "#" + instance));
+    if (number_ == number && topic != chosen_) number_.reset();  // given to another topic
     const bool wanted = topic_.empty() ? (topic == kCombined || topic == kIntegrals) : topic == topic_;
     if (!wanted || instance != instance_) return;
     // sensor_combined where there is one: vehicle_imu is often logged at a part of its rate
     const bool better = topic_.empty() && topic == kCombined && chosen_ == kIntegrals;
-    if (number_ && !better) return;
-    if (intake_.samples() > 0)
+    if ((number_ && !better) || (intake_.samples() > 0 && !better && topic != chosen_)) return;
+    if (better && intake_.samples() > 0)
       throw input_error_at_byte(request_.path, stream_.offset(), "",
                                 "begins sensor_combined where vehicle_imu has samples already: name one of them under "
                                 "channels: {imu: ...}, or with --channel");
@@ -354,7 +360,8 @@ class UlogReader {
         return intake_.damage(content.size(), fault("delta_angle_dt", "is zero"));
       sample = {sample.w / rate_period, sample.f / force_period};
     } else if (layout_.relative && load_little<std::int32_t>(p + *layout_.relative) == kNotRelative) {
-      return;  // no sample of the accelerometers
+      ++without_force_;
+      return;
     }
     const auto stamp = load_little<std::uint64_t>(p + layout_.stamp);
     if (stamp > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max()))
@@ -372,6 +379,7 @@ class UlogReader {
   std::vector<std::int64_t> appended_;   // offsets in the file
   std::optional<std::uint16_t> number_;  // of the topic that is read
   std::string chosen_;
+  long long without_force_ = 0;  // samples of the gyros alone
   long long dropouts_ = 0;
   long long dropped_ms_ = 0;
   NameList rotations_;

@@ -17,7 +17,7 @@ namespace trunnion::io {
 namespace {
 
 constexpr std::size_t kLargestUrdf = std::size_t{1} << 24U;
-constexpr int kDeepestNesting = 200;
+constexpr int kMostElements = 10000;
 
 /// Takes what urdfdom would print.
 class Capture : public console_bridge::OutputHandler {
@@ -41,15 +41,12 @@ Mat3<double> rotation(const urdf::Rotation& q) {
   return Quaternion<double>(q.w, q.x, q.y, q.z).normalized().toRotationMatrix();
 }
 
-/// urdfdom's XML parser recurses: a file nested deeper than any rig would run out of stack.
+/// urdfdom's XML parser recurses: a file nested deeper than any rig would run out of stack. No deeper than it has
+/// elements: what closes one is not looked for, as it may stand in a comment.
 bool too_deep(const std::string& text) {
-  int depth = 0;
-  for (std::size_t i = 0; i + 1 < text.size(); ++i) {
-    if (text[i] != '<') continue;
-    depth += text[i + 1] == '/' ? -1 : 1;
-    if (depth > kDeepestNesting * 50) return true;  // self-closing elements and comments count up too
-  }
-  return false;
+  int elements = 0;
+  for (std::size_t i = 0; i + 1 < text.size(); ++i) elements += text[i] == '<' && text[i + 1] != '/' ? 1 : 0;
+  return elements > kMostElements;
 }
 
 std::size_t count(const std::string& text, const std::string& word) {
@@ -98,7 +95,7 @@ RigFile read_rig(const std::string& path, const std::string& outer_axis, const s
   const std::string text = read_whole(path, kLargestUrdf);
   if (!is_utf_8(text))  // TinyXML reads on past the end after a character that has not the bytes it promises
     throw input_error(path, 0, "", "is no text in UTF-8");
-  if (too_deep(text)) throw input_error(path, 0, "", "is nested too deep");
+  if (too_deep(text)) throw input_error(path, 0, "", "has more than " + std::to_string(kMostElements) + " elements");
   Capture capture;
   const urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(text);
   if (!model)

@@ -91,6 +91,29 @@ TEST_F(ForeignTables, InQuotes) {
   EXPECT_REFUSES(ExitCode::kInput, "has no row of numbers", read(header, mine));
 }
 
+TEST_F(ForeignTables, WithEmptyRowsAndRowsOfNoNumber) {
+  const std::string header = "TimeStartup,GyroX,GyroY,GyroZ,AccelX,AccelY,AccelZ\n";
+  const std::string row = "1000,1,2,3,4,5,6\n";
+  read(header + row + "2000,,,,,,\n" + row);
+  EXPECT_EQ(collect_->samples.size(), 2U) << "of another instrument";
+  EXPECT_REFUSES(ExitCode::kInput, "a.log:3: gyro_x: is not finite",
+                 read(header + row + "2000,nan,nan,nan,nan,nan,nan\n"));
+}
+
+TEST_F(ForeignTables, WhoseLinesOrColumnsAreAmbiguous) {
+  const std::string header = "t_s,gyro_x_rad_s,gyro_y_rad_s,gyro_z_rad_s,accel_x_g,accel_y_g,accel_z_g,note";
+  const std::string row = "1,1,2,3,4,5,6,x";
+  read(header + "\r\n" + row + "\r\r\n" + row + "\r\n");
+  EXPECT_EQ(collect_->samples.size(), 2U);
+  for (const std::string& ends : {row + "\r" + row + "\n", "1,1,2,3,4,5,6\r1,1,2,3,4,5,6\n" + row})
+    EXPECT_REFUSES(ExitCode::kInput, "a.log:2: has a carriage return within", read(header + "\n" + ends));
+  EXPECT_REFUSES(ExitCode::kInput, "gyro_y: is there twice, as 'GyroY'",
+                 read("TimeStartup,GyroX,GyroY,GyroY,GyroZ,AccelX,AccelY,AccelZ\n1,1,2,3,4,5,6,7\n"));
+  std::string wide = "TimeStartup";
+  for (int i = 0; i < 5000; ++i) wide += "," + std::to_string(i) + ":GyroX";
+  EXPECT_REFUSES(ExitCode::kInput, "has more than 4096 columns", read(wide + "\n"));
+}
+
 TEST_F(ForeignTables, OfTwoInstruments) {
   const std::string row = "5000,1,1,1,0.25,-0.5,0.125,1.5,-2.25,9.75\n";
   const std::string of_b = "B:scaledGyroX,B:scaledGyroY,B:scaledGyroZ,B:scaledAccelX,B:scaledAccelY,B:scaledAccelZ";

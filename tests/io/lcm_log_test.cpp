@@ -73,7 +73,6 @@ TEST(LcmRecording, ReadsBackWhatItWrote) {
   EXPECT_EQ(collect.azimuth[7], 0.01 * 7);
 }
 
-// A record whose length was overwritten is lost, and one record only; the rest of the file is read.
 // A message states a temperature, or that it does not know: then it is told once, and what is none counts as unknown.
 TEST(LcmRecording, TellsTheTemperature) {
   const TemporaryFolder folder;
@@ -111,17 +110,18 @@ TEST(LcmRecording, TellsTheTemperature) {
   EXPECT_EQ(sink.samples.size(), 9U);
 }
 
+// A record whose length was overwritten is lost, and one record only; the rest of the file is read.
 TEST(LcmLog, SurvivesACorruptLength) {
   const TemporaryFolder folder;
-  const std::string path = change(folder, write_log(folder, 100), [](std::string& bytes) {
+  const std::string path = change(folder, write_log(folder, 1000), [](std::string& bytes) {
     for (const std::size_t record : {5U, 50U}) bytes.replace(record * kPair + 24, 4, "\x7f\xff\xff\xff");
   });
   Collect collect;
   const LogLosses losses = read_lcm_recording(log_request(path, {}, true), collect);
   EXPECT_EQ(losses.records, 2);
   EXPECT_EQ(losses.bytes, 2 * (28 + 3 + 80));
-  EXPECT_EQ(collect.samples.size(), 98U);
-  EXPECT_EQ(collect.azimuth.size(), 100U);
+  EXPECT_EQ(collect.samples.size(), 998U);
+  EXPECT_EQ(collect.azimuth.size(), 1000U);
 }
 
 // A plausible but wrong length would swallow the records behind it: the sync words inside give it away.
@@ -138,14 +138,23 @@ TEST(LcmLog, SurvivesAPlausibleWrongLength) {
 
 TEST(LcmLog, CountsTheRecordsThatAStretchOfDamageTook) {
   const TemporaryFolder folder;
-  const std::string path = change(folder, write_log(folder, 100), [](std::string& bytes) {
+  const std::string path = change(folder, write_log(folder, 1000), [](std::string& bytes) {
     bytes.replace(10 * kPair, 5 * kPair, std::string(5 * kPair, 'x'));
   });
   Collect collect;
   const LogLosses losses = read_lcm_recording(log_request(path, {}, true), collect);
   EXPECT_EQ(losses.records, 10);
   EXPECT_EQ(losses.bytes, static_cast<long long>(5 * kPair));
-  EXPECT_EQ(collect.samples.size(), 95U);
+  EXPECT_EQ(collect.samples.size(), 995U);
+}
+
+TEST(LcmLog, ThatIsDamagedThroughoutIsRefused) {
+  const TemporaryFolder folder;
+  const std::string path = change(folder, write_log(folder, 100), [](std::string& bytes) {
+    for (const std::size_t pair : {80U, 60U, 40U, 20U}) bytes.insert(pair * kPair, std::string(400, '\0'));
+  });
+  Collect collect;
+  EXPECT_REFUSES(ExitCode::kInput, "1600 of ", read_lcm_recording(log_request(path, {}, true), collect));
 }
 
 TEST(LcmLog, SurvivesACutEnd) {

@@ -16,12 +16,26 @@ using testing::ElementsAre;
 using Ulogs = LogReading;
 
 TEST_F(Ulogs, OfSensorCombined) {
-  read(ulog_head() + ulog_message('F', kCombinedFormat) + ulog_subscribe(0, 7, "sensor_combined") +
-       ulog_combined(7, 1000, kSample, 0) + ulog_combined(7, 2000, kSample, std::numeric_limits<std::int32_t>::max()) +
-       ulog_combined(7, 3000, kSample, -100) + ulog_combined(8, 3500, kSample, 0) + ulog_message('L', "6a message"));
+  const LogLosses losses = read(
+      ulog_head() + ulog_message('F', kCombinedFormat) + ulog_subscribe(0, 7, "sensor_combined") +
+      ulog_combined(7, 1000, kSample, 0) + ulog_combined(7, 2000, kSample, std::numeric_limits<std::int32_t>::max()) +
+      ulog_combined(7, 3000, kSample, -100) + ulog_combined(8, 3500, kSample, 0) + ulog_message('L', "6a message"));
   EXPECT_THAT(collect_->stamps, ElementsAre(1000, 3000)) << "the second has no sample of the accelerometers";
+  EXPECT_EQ(losses.note, "1 samples of the gyros without one of the accelerometers are passed over");
   EXPECT_EQ(collect_->samples[1].w, kSample.w);
   EXPECT_EQ(collect_->samples[1].f, kSample.f);
+}
+
+TEST_F(Ulogs, FollowANumberThatIsGivenToAnotherTopic) {
+  const std::string begin = ulog_head() + ulog_message('F', kCombinedFormat) + ulog_subscribe(0, 7, "sensor_combined") +
+                            ulog_combined(7, 1, kSample, 0);
+  const std::string removed = ulog_message('R', std::string("\x07\0", 2));
+  const std::string other = ulog_subscribe(0, 7, "foo") + ulog_combined(7, 2, kSample, 0);
+  for (const std::string& log :
+       {begin + removed + ulog_combined(7, 2, kSample, 0), begin + removed + other, begin + other})
+    EXPECT_EQ((read(log), collect_->stamps), std::vector<std::int64_t>{1});
+  read(begin + other + ulog_subscribe(0, 9, "sensor_combined") + ulog_combined(9, 3, kSample, 0));
+  EXPECT_THAT(collect_->stamps, ElementsAre(1, 3));
 }
 
 TEST_F(Ulogs, OfVehicleImu) {

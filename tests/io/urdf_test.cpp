@@ -48,6 +48,9 @@ TEST_F(Urdf, MountsComeInTheOrderAskedFor) {
 // What urdfdom refuses, and what it lets through.
 TEST_F(Urdf, RefusesEveryMalformation) {
   EXPECT_REFUSES(ExitCode::kInput, "not a usable URDF", read("<robot"));
+  std::string deep = "<robot name='r'>";
+  for (int i = 0; i < 50000; ++i) deep += "<a><!--</</-->";
+  EXPECT_REFUSES(ExitCode::kInput, "more than 10000 elements", read(deep));
   EXPECT_REFUSES(ExitCode::kInput, "not a usable URDF", read(""));
   EXPECT_REFUSES(ExitCode::kInput, "joint 'pitch': lower limit above the upper one",
                  read(changed("lower=\"-0.17453292519943295\"", "lower=\"2\"")));

@@ -4,8 +4,10 @@
 #include "trunnion/io/whole_file.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <filesystem>
 
 #include "matchers/refuses.hpp"
@@ -55,14 +57,54 @@ TEST(WholeFile, RefusesADeviceAndWritesThroughALink) {
   EXPECT_EQ(read_whole(folder / "target.txt"), "new");
 }
 
-TEST(WholeFile, SaysThatTheDiskIsFull) {
-  if (::access("/dev/full", W_OK) != 0) GTEST_SKIP() << "no /dev/full";
+TEST(WholeFile, PassesByWhatOthersLeftInItsPlace) {
   const TemporaryFolder folder;
-  // the temporary file itself is the full device
   const std::string target = folder / "a.txt";
-  std::filesystem::create_symlink("/dev/full", target + ".part-" + std::to_string(::getpid()));
-  EXPECT_REFUSES(ExitCode::kInput, "cannot write: No space left on device", write_whole(target, "x"));
-  EXPECT_FALSE(std::filesystem::exists(target));
+  const std::string taken = target + ".part-" + std::to_string(::getpid());
+  write_whole(folder / "victim.txt", "kept");
+  std::filesystem::create_symlink(folder / "victim.txt", taken);
+  write_whole(target, "new");
+  EXPECT_EQ(read_whole(folder / "victim.txt"), "kept");
+  EXPECT_EQ(read_whole(target), "new");
+  EXPECT_FALSE(std::filesystem::is_symlink(target));
+}
+
+TEST(WholeFile, KeepsPermissionsAndALinkToNothing) {
+  const TemporaryFolder folder;
+  using std::filesystem::perms;
+  write_whole(folder / "a.txt", "old");
+  std::filesystem::permissions(folder / "a.txt", perms::owner_read | perms::owner_write);
+  write_whole(folder / "a.txt", "new");
+  EXPECT_EQ(std::filesystem::status(folder / "a.txt").permissions(), perms::owner_read | perms::owner_write);
+  std::filesystem::create_symlink("later.txt", folder / "link.txt");
+  write_whole(folder / "link.txt", "new");
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "link.txt"));
+  EXPECT_EQ(read_whole(folder / "later.txt"), "new");
+}
+
+TEST(WholeFile, IsGoneBeforeAProgramThatIsStopped) {
+  const TemporaryFolder folder;
+  WholeFile file(folder / "a.txt");
+  EXPECT_EQ(folder.files(), 1U);
+  remove_unfinished();
+  EXPECT_EQ(folder.files(), 0U);
+}
+
+TEST(WholeFile, SaysWhatTheDiskRefuses) {
+  const TemporaryFolder folder;
+  const rlimit before = [] {
+    rlimit limit{};
+    ::getrlimit(RLIMIT_FSIZE, &limit);
+    return limit;
+  }();
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit small{1000, before.rlim_max};
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
+  EXPECT_REFUSES(ExitCode::kInput, "cannot write: File too large",
+                 write_whole(folder / "a.txt", std::string(2000, 'x')));
+  ::setrlimit(RLIMIT_FSIZE, &before);
+  static_cast<void>(std::signal(SIGXFSZ, handler));
+  EXPECT_EQ(folder.files(), 0U);
 }
 
 // FIPS 180-4, example.

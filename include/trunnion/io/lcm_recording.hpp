@@ -47,8 +47,12 @@ class LcmDecoder {
   /// encoder_t with two axes; with a map, its type.
   void encoder(const LcmEvent& event);
 
-  /// Call after the last message. @throws Error (input) when more than one message in a thousand could not be decoded
-  void finish() const { intake_.finish(); }
+  /// Call after the last message. @param bytes of the log, where lose() was told of it
+  /// @throws Error (input) when more than one message in a thousand could not be decoded, or a byte in a hundred is
+  /// lost
+  void finish(std::int64_t bytes = 0) const { intake_.finish(bytes); }
+  /// Bytes of the log that belong to no record, up to one that is whole.
+  void lose(std::int64_t bytes, const Error& fault) { intake_.lose(bytes, fault); }
 
   [[nodiscard]] long long samples() const { return intake_.samples(); }
   [[nodiscard]] long long encoders() const { return intake_.encoders(); }

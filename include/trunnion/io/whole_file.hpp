@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the trunnion authors
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Output that is written whole or not at all: a temporary file beside the target, fsync, rename.
+/// Output that is written whole or not at all: a temporary file beside the target, fsync, rename. What was there keeps
+/// its permissions.
 
 #pragma once
 
@@ -22,8 +23,12 @@ class WholeFile {
 
   /// Buffered. @throws Error (input) when the disk is full
   void write(std::string_view bytes);
-  /// Flushes, syncs and renames. @throws Error (input)
+  /// Flushes and syncs: all that a full disk refuses. @throws Error (input)
+  void settle();
+  /// Settles and renames. @throws Error (input)
   void commit();
+  /// What commit() would replace is gone from now on.
+  void remove_old() const;
 
  private:
   void flush();
@@ -32,6 +37,9 @@ class WholeFile {
   std::string buffer_;
   int descriptor_ = -1;
 };
+
+/// Removes what was written and not committed: for a handler of signals, of a program that ends.
+void remove_unfinished() noexcept;
 
 /// The text as a whole file.
 void write_whole(const std::string& path, std::string_view text);
