@@ -19,12 +19,12 @@ from pyulog import ULog
 reader, command, recordings = (os.path.abspath(path) for path in sys.argv[1:4])
 
 
-def best(function, repeats=3):
+def best(function, repeats=9):
     times = []
     for _ in range(repeats):
-        begin = time.perf_counter()
+        begin = time.process_time()
         count = function()
-        times.append(time.perf_counter() - begin)
+        times.append(time.process_time() - begin)
     return min(times), count
 
 
