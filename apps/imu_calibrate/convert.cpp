@@ -84,7 +84,7 @@ void convert(const Options& o) {
   const io::LogFormat& format = format_to_write(o.output, o.format);
   auto [run, files] = one_recording(o.input, o.channel, o.of_run);
   if (!o.encoder_channel.empty()) {
-    if (is_run_file(o.input)) throw Error(ExitCode::kUsage, "--encoder-channel: the run file names its channels");
+    if (io::is_run_file(o.input)) throw Error(ExitCode::kUsage, "--encoder-channel: the run file names its channels");
     run.channels.encoder.name = o.encoder_channel;
   }
   std::vector<std::string> sources = files_of(run);

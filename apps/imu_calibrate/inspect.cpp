@@ -242,7 +242,7 @@ void print_text(const Json& all) {
 
 ExitCode inspect(const Options& o) {
   io::RunFile run;
-  if (is_run_file(o.input)) {
+  if (io::is_run_file(o.input)) {
     run = io::read_run_file(o.input);
   } else {
     run.channels = o.channels;

@@ -56,11 +56,6 @@ void collect(RunInputs& inputs, std::vector<RunInputs>& each) {
 
 }  // namespace
 
-bool is_run_file(const std::string& path) {
-  const std::string extension = std::filesystem::path(path).extension().string();
-  return extension == ".yaml" || extension == ".yml";
-}
-
 std::vector<std::string> files_of(const io::RunFile& run) {
   std::vector<std::string> files = {run.path, run.rig, run.sheet_path, run.moves};
   for (const io::RecordingFiles& recording : run.recordings)
@@ -79,7 +74,7 @@ void keep_inputs(const std::string& output, const std::vector<std::string>& inpu
 
 OneRecording one_recording(const std::string& input, const std::string& channel, int of_run) {
   OneRecording one;
-  if (is_run_file(input)) {
+  if (io::is_run_file(input)) {
     one.run = io::read_run_file(input);
     const int recordings = static_cast<int>(one.run.recordings.size());
     if (of_run > recordings || (of_run == 0 && recordings > 1))

@@ -23,9 +23,6 @@ struct RunInputs {
   io::LogLosses losses;
 };
 
-/// By its extension: .yaml, .yml. What another file is, its content tells (io::format_of).
-bool is_run_file(const std::string& path);
-
 /// Every file that a run names, itself included.
 std::vector<std::string> files_of(const io::RunFile& run);
 

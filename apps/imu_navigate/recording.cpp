@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <filesystem>
 
 #include "../terminal.hpp"
 #include "trunnion/core/units.hpp"
@@ -16,6 +15,7 @@
 #include "trunnion/io/csv.hpp"
 #include "trunnion/io/fault.hpp"
 #include "trunnion/io/lcm_recording.hpp"
+#include "trunnion/io/run_file.hpp"
 #include "trunnion/positions/channel_clock.hpp"
 
 namespace trunnion::app {
@@ -241,8 +241,7 @@ void judge_magnitude(const RecordingSource& source, Recording& recording) {
 Recording read_recording(const RecordingSource& source) {
   Recording recording;
   Collector collector(source.log, recording);
-  const std::string extension = std::filesystem::path(source.log).extension().string();
-  if (extension == ".yaml" || extension == ".yml")
+  if (io::is_run_file(source.log))
     throw Error(ExitCode::kUsage,
                 source.log + ": is a run file: imu_calibrate convert makes a log of a recording of it");
   if (io::format_of(source.log).by_channel) {

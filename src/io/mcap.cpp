@@ -8,8 +8,6 @@
 #include <zstd.h>
 
 #include <algorithm>
-#include <array>
-#include <limits>
 #include <map>
 #include <set>
 #include <string>

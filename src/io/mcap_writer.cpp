@@ -3,9 +3,9 @@
 
 #include <zstd.h>
 
+#include <algorithm>
 #include <array>
 #include <limits>
-#include <vector>
 
 #include "little_endian.hpp"
 #include "mcap_records.hpp"

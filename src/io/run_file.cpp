@@ -143,6 +143,11 @@ RecordingFiles read_files(const StrictYaml& node, const std::string& run, bool h
 
 }  // namespace
 
+bool is_run_file(const std::string& path) {
+  const std::string extension = std::filesystem::path(path).extension().string();
+  return extension == ".yaml" || extension == ".yml";
+}
+
 RunFile read_run_file(const std::string& path) {
   const StrictYaml root = StrictYaml::load(path, "trunnion-run/1");
   root.only({"format", "site", "rig", "axes", "sheet", "serial", "clock", "bias", "model", "refuse_above", "recordings",

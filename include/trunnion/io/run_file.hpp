@@ -71,6 +71,9 @@ struct RunFile {
 /// @throws Error (input) naming file, line and field
 RunFile read_run_file(const std::string& path);
 
+/// By its extension: .yaml, .yml. What another file is, its content tells (format_of).
+bool is_run_file(const std::string& path);
+
 /// How a run reads a log: its channels, columns, joints, counts.
 LogRequest log_request(const RunFile& run, const std::string& path);
 
