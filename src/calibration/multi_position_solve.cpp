@@ -10,8 +10,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "multi_position_costs.hpp"
 #include "trunnion/core/error.hpp"
-#include "trunnion/core/units.hpp"
+#include "turn_rotation.hpp"
 
 namespace trunnion::calibration {
 namespace {
@@ -24,192 +25,6 @@ constexpr double kFirstForce = 0.02;  // m/s^2
 constexpr double kFirstRate = 1e-3;   // rad/s
 constexpr double kFirstTurn = 0.02;   // rad
 constexpr double kHuber = 4.0;
-constexpr double kFlatHeadingSigma = kPi / 1.7320508075688772;
-
-/// The unit that the scaled unknowns @p x describe.
-template <class T>
-InertialUnit<T> unit_from(const Layout& layout, const T* x, std::size_t recording) {
-  const auto value = [&](int i) { return x[i] * T(layout.parameters[static_cast<std::size_t>(i)].scale); };
-  InertialUnit<T> unit;
-  for (int i = 0; i < 3; ++i) {
-    unit.gyro.bias(i) = value(layout.gyro_bias[recording] + i);
-    unit.accel.bias(i) = value(layout.accel_bias[recording] + i);
-    if (layout.gyro_cubic >= 0) unit.gyro.cubic(i) = value(layout.gyro_cubic + i);
-    if (layout.accel_quadratic >= 0) unit.accel.quadratic(i) = value(layout.accel_quadratic + i);
-    for (int j = 0; j < 3; ++j) {
-      unit.gyro.M(i, j) = value(layout.gyro_matrix + 3 * i + j);
-      if (layout.g_sensitivity >= 0) unit.g_sensitivity(i, j) = value(layout.g_sensitivity + 3 * i + j);
-      if (layout.accel_matrix[i][j] >= 0) unit.accel.M(i, j) = value(layout.accel_matrix[i][j]);
-    }
-  }
-  return unit;
-}
-
-/// Rotation of a turn at given unknowns, and its derivative to the scaled unknowns (right perturbation).
-struct TurnRotation {
-  Quaternion<double> q = Quaternion<double>::Identity();
-  Eigen::Matrix<double, 3, Eigen::Dynamic> J;
-  double duration = 0.0;
-};
-
-/// Jacobian of Exp: Exp(phi + d) = Exp(phi) Exp(Jr d), second order in phi.
-Mat3<double> right_jacobian(const Vec3<double>& phi) {
-  const Mat3<double> S = skew(phi);
-  return Mat3<double>::Identity() - 0.5 * S + S * S / 6.0;
-}
-
-/// Integrates eq. (2). @param w_ie_b Earth rate in the case at the start; @param layout null: no derivative
-TurnRotation integrate(const Turn& turn, const InertialUnit<double>& unit, const Vec3<double>& w_ie_b,
-                       const Layout* layout, std::size_t recording) {
-  TurnRotation rotation;
-  const UnitCorrection<double> correction(unit);
-  const Mat3<double> K = unit.gyro.matrix();
-  const Mat3<double> K_inverse = K.inverse();
-  // sums of C_0k d(phi_k)/d(column i of bias) times what the column is multiplied with: 1, w_j, f_j, w_i^3
-  Mat3<double> of_bias = Mat3<double>::Zero();
-  Mat3<double> of_cubic = Mat3<double>::Zero();
-  std::array<Mat3<double>, 3> of_rate = {of_bias, of_bias, of_bias};
-  std::array<Mat3<double>, 3> of_force = of_rate;
-  Vec3<double> before = Vec3<double>::Zero();
-  for (const TurnStep& step : turn.steps) {
-    const InertialSample<double> input = correction.correct(step.mean);
-    const Vec3<double> angle = (input.w - rotation.q.conjugate() * w_ie_b) * step.dt;
-    const Vec3<double> phi =
-        angle + before.cross(angle) / 12.0;  // coning over this and the previous step: Savage 1998, eq. (43)
-    before = angle;
-    const Quaternion<double> turned = quaternion_exp<double>(phi);
-    rotation.q = rotation.q * turned;
-    rotation.duration += step.dt;
-    if (layout == nullptr) continue;
-    // (K + 3 N w^2)^-1 to first order in N
-    const Mat3<double> inverse =
-        K_inverse - K_inverse * (3.0 * unit.gyro.cubic.cwiseProduct(input.w.cwiseAbs2())).asDiagonal() * K_inverse;
-    const Mat3<double> gain = rotation.q.toRotationMatrix() * (right_jacobian(phi) * inverse) * -step.dt;
-    of_bias += gain;
-    of_cubic += gain * input.w.cwiseProduct(input.w.cwiseAbs2()).asDiagonal();
-    for (std::size_t j = 0; j < 3; ++j) {
-      of_rate[j] += gain * input.w(static_cast<Eigen::Index>(j));
-      of_force[j] += gain * input.f(static_cast<Eigen::Index>(j));
-    }
-  }
-  rotation.q.normalize();
-  if (layout == nullptr) return rotation;
-  rotation.J = Eigen::Matrix<double, 3, Eigen::Dynamic>::Zero(3, layout->size());
-  const Mat3<double> C_end = rotation.q.conjugate().toRotationMatrix();
-  const auto set = [&](int place, const Vec3<double>& column) {
-    rotation.J.col(place) = C_end * column * layout->parameters[static_cast<std::size_t>(place)].scale;
-  };
-  for (int i = 0; i < 3; ++i) {
-    set(layout->gyro_bias[recording] + i, of_bias.col(i));
-    if (layout->gyro_cubic >= 0) set(layout->gyro_cubic + i, of_cubic.col(i));
-    for (int j = 0; j < 3; ++j) {
-      set(layout->gyro_matrix + 3 * i + j, of_rate[static_cast<std::size_t>(j)].col(i));
-      if (layout->g_sensitivity >= 0)
-        set(layout->g_sensitivity + 3 * i + j, of_force[static_cast<std::size_t>(j)].col(i));
-    }
-  }
-  return rotation;
-}
-
-struct RestResidual {
-  const Layout* layout;
-  const Site* site;
-  const Rest* rest;
-  std::size_t recording;
-  Vec3<double> w_ie_u;
-  double sigma_f;
-  double sigma_w;
-
-  template <class T>
-  bool operator()(T const* const* parameters, T* residual) const {
-    const InertialUnit<T> unit = unit_from(*layout, parameters[0], recording);
-    const Eigen::Map<const Quaternion<T>> q_ub(parameters[1]);
-    const T gravity =
-        parameters[0][layout->gravity] * T(layout->parameters[static_cast<std::size_t>(layout->gravity)].scale);
-    InertialSample<T> input;
-    input.f = q_ub.conjugate() * Vec3<T>(T(0), T(0), gravity);
-    input.w = q_ub.conjugate() * w_ie_u.cast<T>();
-    const InertialSample<T> reading = unit.distort(input);
-    const Vec3<T> r_f = (rest->mean.f.cast<T>() - reading.f) / T(sigma_f);
-    const Vec3<T> r_w = (rest->mean.w.cast<T>() - reading.w) / T(sigma_w);
-    for (int i = 0; i < 3; ++i) {
-      residual[i] = r_f(i);
-      residual[3 + i] = r_w(i);
-    }
-    return true;
-  }
-};
-
-/// log((q_before turn exp(correction))^-1 q_after) / sigma
-struct TurnResidual {
-  const TurnRotation* rotation;
-  double sigma;
-
-  template <class T>
-  bool operator()(const T* correction, const T* before, const T* after, T* residual) const {
-    const Quaternion<T> predicted = Eigen::Map<const Quaternion<T>>(before) * rotation->q.cast<T>() *
-                                    quaternion_exp<T>(Eigen::Map<const Vec3<T>>(correction));
-    Eigen::Map<Vec3<T>> r(residual);
-    r = quaternion_log<T>(Quaternion<T>(predicted.conjugate() * Eigen::Map<const Quaternion<T>>(after))) / T(sigma);
-    return true;
-  }
-};
-
-/// TurnResidual of correction = J (x - x0): differentiated by three corrections, not by all unknowns.
-class TurnCost final : public ceres::CostFunction {
- public:
-  TurnCost(const TurnRotation* rotation, const double* x0, double sigma)
-      : rotation_(rotation), x0_(x0, rotation->J.cols()), by_correction_(new TurnResidual{rotation, sigma}) {
-    set_num_residuals(3);
-    *mutable_parameter_block_sizes() = {static_cast<int>(rotation->J.cols()), 4, 4};
-  }
-
-  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
-    const Eigen::Map<const Eigen::VectorXd> x(parameters[0], x0_.size());
-    const Vec3<double> correction = rotation_->J * (x - x0_);
-    const double* blocks[] = {correction.data(), parameters[1], parameters[2]};
-    Eigen::Matrix<double, 3, 3, Eigen::RowMajor> J;
-    double* by[] = {J.data(), nullptr, nullptr};
-    if (jacobians != nullptr) {
-      by[1] = jacobians[1];
-      by[2] = jacobians[2];
-    }
-    if (!by_correction_.Evaluate(blocks, residuals, jacobians != nullptr ? by : nullptr)) return false;
-    if (jacobians != nullptr && jacobians[0] != nullptr) {
-      Eigen::Map<Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor>>(jacobians[0], 3, x0_.size()).noalias() =
-          J * rotation_->J;
-    }
-    return true;
-  }
-
- private:
-  const TurnRotation* rotation_;
-  Eigen::Map<const Eigen::VectorXd> x0_;
-  ceres::AutoDiffCostFunction<TurnResidual, 3, 3, 4, 4> by_correction_;
-};
-
-/// (x - mean) / sigma of one scaled unknown.
-struct UnknownPrior {
-  int index;
-  double mean;
-  double sigma;
-  template <class T>
-  bool operator()(T const* const* parameters, T* residual) const {
-    residual[0] = (parameters[0][index] - T(mean)) / T(sigma);
-    return true;
-  }
-};
-
-/// Keeps the heading of a chain of rests within the circle: a flat prior as its standard deviation.
-struct HeadingPrior {
-  Quaternion<double> q0;
-  template <class T>
-  bool operator()(T const* const* parameters, T* residual) const {
-    const Eigen::Map<const Quaternion<T>> q(parameters[0]);
-    residual[0] = quaternion_log<T>(Quaternion<T>(q * q0.conjugate().cast<T>())).z() / T(kFlatHeadingSigma);
-    return true;
-  }
-};
 
 enum Component : std::size_t { kRestForce, kRestRate, kTurns, kComponents };
 
@@ -383,7 +198,7 @@ class HandProblem {
         const Rest& rest = recordings_[r].rests[k];
         const double sigma_f = std::sqrt(white_force(rest) + component_[kRestForce]);
         const double sigma_w = std::sqrt(white_rate(rest) + component_[kRestRate]);
-        add(new RestResidual{&layout_, &site_, &rest, r, w_ie_u, sigma_f, sigma_w}, 6, new ceres::HuberLoss(kHuber),
+        add(new RestResidual{&layout_, &rest, r, w_ie_u, sigma_f, sigma_w}, 6, new ceres::HuberLoss(kHuber),
             {x_.data(), attitude_[first_rest_[r] + k].coeffs().data()}, {n, 4});
         for (int i = 0; i < 6; ++i)
           rows_.push_back({i < 3 ? kRestForce : kRestRate, i < 3 ? white_force(rest) : white_rate(rest)});
