@@ -35,7 +35,7 @@ void print(const nlohmann::ordered_json& tree, const std::string& indent) {
 }  // namespace
 
 void check_outputs(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs) {
-  std::vector<std::string> seen;
+  std::vector<std::filesystem::path> seen;
   for (const std::string& out : outputs) {
     if (out.empty()) continue;
     for (const std::string& in : inputs) {
@@ -43,10 +43,12 @@ void check_outputs(const std::vector<std::string>& outputs, const std::vector<st
       if (!in.empty() && std::filesystem::equivalent(out, in, error) && !error)
         throw Error(ExitCode::kUsage, out + ": would overwrite an input");
     }
-    const std::filesystem::path whole = std::filesystem::absolute(out).lexically_normal();
-    if (std::find(seen.begin(), seen.end(), whole.string()) != seen.end())
+    const std::filesystem::path whole = std::filesystem::absolute(out);
+    std::error_code unresolved;
+    const std::filesystem::path resolved = std::filesystem::weakly_canonical(whole, unresolved);
+    if (std::find(seen.begin(), seen.end(), resolved) != seen.end())
       throw Error(ExitCode::kUsage, out + ": two outputs in one file");
-    seen.push_back(whole.string());
+    seen.push_back(resolved);
     if (::access(whole.parent_path().c_str(), W_OK) != 0)
       throw Error(ExitCode::kInput, out + ": its folder cannot be written");
   }

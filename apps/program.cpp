@@ -23,12 +23,16 @@ void on_end(int signal) {
   static_cast<void>(std::raise(signal));
 }
 
+/// Unless the signal is ignored, as nohup wants it.
+void handle(int signal, void (*handler)(int)) {
+  if (std::signal(signal, handler) == SIG_IGN) static_cast<void>(std::signal(signal, SIG_IGN));
+}
+
 }  // namespace
 
 ExitCode run_program(CLI::App& app, std::vector<std::string> arguments, const std::function<ExitCode()>& run) {
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-    if (std::signal(signal, on_end) == SIG_IGN) static_cast<void>(std::signal(signal, SIG_IGN));  // as nohup wants it
-  }
+  end_on_signals();
+  static_cast<void>(std::signal(SIGXFSZ, SIG_IGN));  // a file beyond its limit is an error, as a full disk is
   const std::string name = app.get_name();
   ExitCode code = ExitCode::kDone;
   try {
@@ -36,7 +40,7 @@ ExitCode run_program(CLI::App& app, std::vector<std::string> arguments, const st
     app.parse(arguments);
     code = run();
   } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? ExitCode::kDone : ExitCode::kUsage;
+    if (app.exit(e) != 0) return ExitCode::kUsage;
   } catch (const Error& e) {
     std::fprintf(stderr, "%s: %s\n", name.c_str(), e.what());
     return e.code();
@@ -59,9 +63,12 @@ int main_of(int argc, char** argv, const std::function<ExitCode(std::vector<std:
   }
 }
 
+void end_on_signals() {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) handle(signal, on_end);
+}
+
 void catch_interrupts() {
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
+  for (const int signal : {SIGINT, SIGTERM}) handle(signal, on_signal);
 }
 
 bool interrupted() { return signalled != 0; }

@@ -23,6 +23,8 @@ int main_of(int argc, char** argv, const std::function<ExitCode(std::vector<std:
 
 /// From now on SIGINT and SIGTERM end no program but set interrupted().
 void catch_interrupts();
+/// ... and end it again, after what is not whole was removed. run_program() begins so.
+void end_on_signals();
 bool interrupted();
 
 }  // namespace trunnion::app

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "../imu_correct/corrector.hpp"
+#include "../outputs.hpp"
 #include "../terminal.hpp"
 #include "command.hpp"
 #include "recordings.hpp"
@@ -30,10 +31,14 @@ struct Options {
 /// Corrects samples and passes them on, with all else that is told.
 class Corrected final : public SampleSink {
  public:
-  Corrected(const InertialUnit<double>& unit, SampleSink& to) : correction_(unit), to_(to) {}
+  Corrected(const InertialUnit<double>& unit, const std::string& source, SampleSink& to)
+      : unit_(unit), source_(source), correction_(unit), to_(to) {}
   void imu(std::int64_t utime, const InertialSample<double>& sample) override {
     ++samples_;
-    to_.imu(utime, correction_.correct(1e-6 * static_cast<double>(utime), sample));
+    const InertialSample<double> corrected = correction_.correct(1e-6 * static_cast<double>(utime), sample);
+    if (!can_be_undone(unit_, corrected))
+      throw io::input_error(source_, 0, "sample " + std::to_string(samples_), kNotUndone);
+    to_.imu(utime, corrected);
   }
   void temperature(double celsius) override {
     has_temperature_ = true;
@@ -45,6 +50,8 @@ class Corrected final : public SampleSink {
   [[nodiscard]] bool has_temperature() const { return has_temperature_; }
 
  private:
+  const InertialUnit<double>& unit_;
+  const std::string& source_;
   StreamCorrection<double> correction_;
   SampleSink& to_;
   bool has_temperature_ = false;
@@ -92,7 +99,7 @@ long long apply_to_log(const io::RecordingFiles& files, const io::LogChannels& c
 long long apply_to_recording(const Options& o, const io::LogFormat& format, const io::RunFile& run,
                              const io::RecordingFiles& files, const InertialUnit<double>& unit) {
   const std::unique_ptr<io::LogWriter> out = format.write(o.output);
-  Corrected sink(unit, *out);
+  Corrected sink(unit, o.input, *out);
   std::vector<std::pair<std::string, std::string>> digests;
   const io::LogLosses losses = io::read_recording(run, files, sink, digests);
   if (sink.samples() == 0) throw io::input_error(o.input, 0, "", "has no samples");
@@ -109,9 +116,8 @@ void apply(const Options& o) {
   files.encoder.clear();
   std::vector<std::string> sources = files_of(run);
   sources.insert(sources.end(), {o.input, o.calibration});
-  keep_inputs(o.output, sources);
   const io::LogFormat& format = format_to_write(o.output, "");
-  if (format.encoder_file != nullptr) keep_inputs(format.encoder_file(o.output), sources);
+  check_outputs({o.output, format.encoder_file == nullptr ? "" : format.encoder_file(o.output)}, sources);
   // from log to log of a bus the other channels go along
   const bool is_log = !files.log.empty() && format.by_channel && io::format_of(files.name()).by_channel;
   long long samples = 0;

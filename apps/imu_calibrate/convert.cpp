@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "../outputs.hpp"
 #include "../terminal.hpp"
 #include "command.hpp"
 #include "recordings.hpp"
@@ -48,6 +49,7 @@ class Converted final : public SampleSink {
     writer_.imu(utime, sample);
     ++samples;
     if (samples > 1 && utime < last_ && ++steps_back == 1) first_back = samples;
+    if (samples > 1 && utime == last_) ++repeats;
     last_ = utime;
   }
   void temperature(double celsius) override {
@@ -66,6 +68,7 @@ class Converted final : public SampleSink {
   long long readings = 0;
   long long steps_back = 0;  // of the stamps
   long long first_back = 0;  // at this sample
+  long long repeats = 0;     // of the stamp before
   bool has_temperature = false;
 
  private:
@@ -89,9 +92,8 @@ void convert(const Options& o) {
   }
   std::vector<std::string> sources = files_of(run);
   sources.insert(sources.end(), {o.input});
-  keep_inputs(o.output, sources);
-  const std::string encoder_file = format.encoder_file == nullptr ? o.output : format.encoder_file(o.output);
-  keep_inputs(encoder_file, sources);
+  const std::string encoder_file = format.encoder_file == nullptr ? "" : format.encoder_file(o.output);
+  check_outputs({o.output, encoder_file}, sources);
   Readings apart;
   io::LogLosses lost;
   if (!files.encoder.empty()) {
@@ -120,7 +122,10 @@ void convert(const Options& o) {
   if (sink.steps_back > 0)
     std::fprintf(stderr, "%s: stamps go back %lld times, first at sample %lld: kept as they are\n", o.input.c_str(),
                  sink.steps_back, sink.first_back);
-  if (encoder_file != o.output && writer->files().size() == 1 && std::filesystem::exists(encoder_file))
+  if (sink.repeats > 0)
+    std::fprintf(stderr, "%s: %lld stamps are those of the sample before: kept as they are\n", o.input.c_str(),
+                 sink.repeats);
+  if (!encoder_file.empty() && writer->files().size() == 1 && std::filesystem::exists(encoder_file))
     std::fprintf(stderr, "%s: is not of this recording, which has no readings of encoders\n", encoder_file.c_str());
   say_losses(losses);
   say_losses(lost);

@@ -13,6 +13,7 @@
 #include <string_view>
 
 #include "../imu_correct/corrector.hpp"
+#include "../outputs.hpp"
 #include "../terminal.hpp"
 #include "command.hpp"
 #include "export_target.hpp"
@@ -300,8 +301,6 @@ Content content_of(const io::CalibrationFile& file, const Options& o) {
 void export_calibration(const Options& o) {
   if (o.output.empty() && o.block.empty())
     throw Error(ExitCode::kUsage, "export: name an --output, a --block, or both");
-  if (!o.output.empty() && o.output == o.block) throw Error(ExitCode::kUsage, "--output and --block are the same file");
-  if (!o.block.empty()) keep_inputs(o.block, {o.calibration, o.sheet});
   const std::string digest = io::sha256(io::read_whole(o.calibration));
   const Content content = content_of(io::read_calibration_file(o.calibration), o);
   if (!o.output.empty()) {
@@ -338,8 +337,8 @@ constexpr std::array<std::string_view, 73> kCppWords = {
     "true",     "try",      "typedef", "union",   "unsigned",  "using",     "virtual",      "void",      "volatile",
     "while"};
 
-/// A C++ name, by parts.
-std::string is_namespace(const std::string& text) {
+/// A C++ name, by parts. @return what is wrong, or empty
+std::string check_namespace(const std::string& text) {
   std::string_view rest(text);
   for (bool more = true; more;) {
     const std::size_t end = rest.find("::");
@@ -390,7 +389,7 @@ void add_export(CLI::App& app, ExitCode& exit_code) {
       ->check(CLI::Range(1, 1000));
   auto* name = command->add_option("--namespace", o->name, "Of the header's names")
                    ->capture_default_str()
-                   ->check(CLI::Validator(is_namespace, "NAME"));
+                   ->check(CLI::Validator(check_namespace, "NAME"));
   auto* rate = command
                    ->add_option("--rate-deg-per-s", o->target.rate_deg_per_s,
                                 "Other programs: at which the size of what they cannot say is stated")
@@ -424,7 +423,7 @@ void add_export(CLI::App& app, ExitCode& exit_code) {
     if (o->format != "px4" && o->format != "ardupilot") {
       for (const CLI::Option* option : of_vehicles) refuse(option, "px4 or ardupilot");
     }
-    if (!o->output.empty()) keep_inputs(o->output, {o->calibration, o->sheet});
+    check_outputs({o->output, o->block}, {o->calibration, o->sheet});
     check_extension(o->output, o->format);
     if (o->format == "c") {
       export_calibration(*o);

@@ -78,6 +78,12 @@ void export_to_target(const TargetOptions& o) {
                    "SHA-256 " + io::sha256(io::read_whole(o.calibration)), "Unit: " + io::printable(request.name)};
   if (o.recording > 0) request.notes.push_back("Turn-on bias: recording " + std::to_string(o.recording));
   const double rate = o.rate_deg_per_s * kRadPerDeg;
+  if (!request.unit.gyro.converges_at(Vec3<double>::Constant(rate)) ||
+      !request.unit.accel.converges_at(Vec3<double>::Constant(kStandardGravity)))
+    throw io::input_error(o.calibration, 0, "",
+                          "its nonlinear terms cannot be undone at " + figure(o.rate_deg_per_s, 4) +
+                              " deg/s and 1 g: they are no small corrections there (--rate-deg-per-s)");
+  static_cast<void>(format.make(request));  // what it refuses is the whole unit, and none of its terms
   const std::string at = " at " + figure(o.rate_deg_per_s, 4) + " deg/s and 1 g";
   std::vector<std::string> words;
   for (const io::Omission& left : io::omissions(format, request, rate))
@@ -89,7 +95,8 @@ void export_to_target(const TargetOptions& o) {
   for (const std::string& word : words) std::fprintf(stderr, "%s\n", word.c_str());
   const InertialSample<double> all = io::departure(format, request, rate);
   if (all.w.maxCoeff() > 1e-6 * rate || all.f.maxCoeff() > 1e-6)
-    std::fprintf(stderr, "In all its readings are off by up to %s%s%s\n", sizes(all).c_str(), at.c_str(),
+    std::fprintf(stderr, "In all%s its readings are off by up to %s%s%s\n",
+                 format.holds_biases ? "" : ", besides the biases,", sizes(all).c_str(), at.c_str(),
                  request.unit.thermal.order() > 0 ? " and the reference temperature" : "");
   for (const std::string& advice : exported.advice) std::fprintf(stderr, "%s: %s\n", o.format.c_str(), advice.c_str());
 }

@@ -63,15 +63,6 @@ std::vector<std::string> files_of(const io::RunFile& run) {
   return files;
 }
 
-void keep_inputs(const std::string& output, const std::vector<std::string>& inputs) {
-  for (const std::string& input : inputs) {
-    std::error_code error;
-    if (std::filesystem::equivalent(input, output, error)) {
-      throw Error(ExitCode::kUsage, output + ": the output is the same file as an input");
-    }
-  }
-}
-
 OneRecording one_recording(const std::string& input, const std::string& channel, int of_run) {
   OneRecording one;
   if (io::is_run_file(input)) {

@@ -26,9 +26,6 @@ struct RunInputs {
 /// Every file that a run names, itself included.
 std::vector<std::string> files_of(const io::RunFile& run);
 
-/// Refuses (usage) an output that is one of the inputs: they are raw data.
-void keep_inputs(const std::string& output, const std::vector<std::string>& inputs);
-
 /// A recording that is named on the command line.
 struct OneRecording {
   io::RunFile run;  ///< defaults where the input is no run file

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "../outputs.hpp"
 #include "../terminal.hpp"
 #include "command.hpp"
 #include "recordings.hpp"
@@ -132,7 +133,7 @@ ExitCode solve(const Options& o) {
     throw Error(ExitCode::kUsage, "--hold-out is for runs by hand: this run has a rig");
   if (!o.model.empty() && run.rig.empty())
     throw Error(ExitCode::kUsage, "--model auto is for runs on a table: this run has no rig");
-  keep_inputs(o.output, files_of(run));
+  check_outputs({o.output}, files_of(run));
   RunInputs inputs;
   io::CalibrationFile file;
   std::vector<double> held_out;

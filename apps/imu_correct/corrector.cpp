@@ -48,6 +48,10 @@ void check_counts(const io::SensorSheet& sheet, const std::string& path, int bit
   hold("scale_counts_per_m_s2", sheet.counts.accel, sheet.accel_range, 1e5);
 }
 
+bool can_be_undone(const InertialUnit<double>& unit, const InertialSample<double>& corrected) {
+  return unit.gyro.converges_at(corrected.w) && unit.accel.converges_at(corrected.f);
+}
+
 Corrector::Corrector(const CorrectorOptions& options) {
   UnitScale<double> scale;
   if (!options.sheet.empty()) {
@@ -65,14 +69,13 @@ Corrector::Corrector(const CorrectorOptions& options) {
     read_block(options, scale);
     if (integers_) fraction = integers_->shift - 2;
   } else {
-    const InertialUnit<double> unit =
-        io::unit_of(io::read_calibration_file(options.calibration), options.calibration, options.recording);
-    thermal_ = unit.thermal.order() > 0;
-    si_.emplace(unit);
+    unit_ = io::unit_of(io::read_calibration_file(options.calibration), options.calibration, options.recording);
+    thermal_ = unit_.thermal.order() > 0;
+    si_.emplace(unit_);
     if (!options.sheet.empty() && options.in_floating_point) {
-      counts_.emplace(unit, scale);
+      counts_.emplace(unit_, scale);
     } else if (!options.sheet.empty()) {
-      const auto made = count_calibration(unit, scale, options.bits, options.fraction);
+      const auto made = count_calibration(unit_, scale, options.bits, options.fraction);
       if (!made.ok()) {
         throw io::input_error(
             options.calibration, 0, "",
@@ -116,6 +119,8 @@ void Corrector::read_block(const CorrectorOptions& options, const UnitScale<doub
     counts_float_.emplace(block.unit);
   }
 }
+
+bool Corrector::undoes(const InertialSample<double>& corrected) const { return can_be_undone(unit_, corrected); }
 
 const char* Corrector::path() const { return integers_ ? "integers" : counts_ || si_ ? "double" : "float"; }
 
@@ -179,9 +184,11 @@ const std::string* CorrectedMessages::correct(const io::LcmEvent& event, Correct
       if (!corrector.takes_counts()) {
         return left_out(event, "raw counts, and no sheet says what one is");
       }
+      const InertialSample<double> corrected = corrector.correct(*raw);
+      if (!corrector.undoes(corrected)) return left_out(event, kNotUndone);
       sequence_.add(raw->sequence);
       ++samples_;
-      io::encode_imu(raw->utime, raw->sequence, corrector.correct(*raw), message_, raw->celsius());
+      io::encode_imu(raw->utime, raw->sequence, corrected, message_, raw->celsius());
       return &message_;
     }
   }
@@ -201,8 +208,10 @@ const std::string* CorrectedMessages::correct(const io::LcmEvent& event, Correct
   if (!taken_.values.empty() && !corrector.takes_si()) why_ = "readings in SI, and the block is for raw counts";
   if (!why_.empty()) return left_out(event, why_);
   if (taken_.values.empty()) return nullptr;
-  for (std::size_t k = 0; k < taken_.values.size(); ++k)
+  for (std::size_t k = 0; k < taken_.values.size(); ++k) {
     taken_.values[k] = corrector.correct(taken_.stamps[k], taken_.values[k], taken_.celsius);
+    if (!corrector.undoes(taken_.values[k])) return left_out(event, kNotUndone);
+  }
   const long long first = samples_;
   samples_ += static_cast<long long>(taken_.values.size());
   if (!mapped_) {

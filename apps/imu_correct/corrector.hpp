@@ -32,6 +32,12 @@ struct CorrectorOptions {
 /// @throws Error (input) for a scale that makes no raw counts, or a range that the register does not hold
 void check_counts(const io::SensorSheet& sheet, const std::string& path, int bits);
 
+/// What is wrong with a sample that can_be_undone() is false for.
+constexpr const char* kNotUndone = "is so large that the nonlinear terms of the calibration cannot be undone";
+
+/// Whether @p corrected is the input to @p unit, and not what an iteration ended at that does not converge.
+bool can_be_undone(const InertialUnit<double>& unit, const InertialSample<double>& corrected);
+
 /// One calibration along one stream of samples. A new file makes a new one.
 class Corrector {
  public:
@@ -45,6 +51,9 @@ class Corrector {
   /// Raw counts, in integers where the calibration allows it.
   [[nodiscard]] InertialSample<double> correct(const io::ImuCounts& raw);
 
+  /// can_be_undone() of what correct() made; of a block: whether it is finite.
+  [[nodiscard]] bool undoes(const InertialSample<double>& corrected) const;
+
   [[nodiscard]] bool takes_si() const { return si_.has_value() || si_float_.has_value(); }
   [[nodiscard]] bool takes_counts() const { return integers_ || counts_.has_value() || counts_float_.has_value(); }
   /// Samples so far that stated no temperature, of a calibration that has terms of it.
@@ -56,6 +65,7 @@ class Corrector {
   void take_temperature(double celsius);
   void read_block(const CorrectorOptions& options, const UnitScale<double>& scale);
 
+  InertialUnit<double> unit_;  // perfect where a block says what it is
   std::optional<StreamCorrection<double>> si_;
   std::optional<UnitCorrection<float>> si_float_;  // of a block
   std::optional<StreamCorrection<double>> counts_;

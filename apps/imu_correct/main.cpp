@@ -65,8 +65,9 @@ class Correct {
   }
 
   ExitCode run() {
-    std::fprintf(stderr, "%s: %s to %s, raw counts in %s\n", connection_.url().c_str(), channels_.imu_channel().c_str(),
-                 o_.out.c_str(), corrector_->takes_counts() ? corrector_->path() : "no way: there is no --sheet");
+    std::fprintf(stderr, "%s: %s to %s, %s%s\n", connection_.url().c_str(), channels_.imu_channel().c_str(),
+                 o_.out.c_str(), corrector_->takes_counts() ? "raw counts in " : "no raw counts: there is no --sheet",
+                 corrector_->takes_counts() ? corrector_->path() : "");
     auto looked = std::chrono::steady_clock::now();
     while (!interrupted()) {
       connection_.handle(100);

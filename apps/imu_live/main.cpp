@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "../imu_calibrate/result.hpp"
+#include "../outputs.hpp"
 #include "../program.hpp"
 #include "../terminal.hpp"
 #include "session.hpp"
@@ -85,7 +86,7 @@ ExitCode live(const Options& o, SharedState& state) {
     throw Error(ExitCode::kInput, o.run +
                                       ": model: temperature: a running estimate cannot know the range to come: record "
                                       "the soak's channels to logs, and solve those");
-  keep_inputs(o.output, files_of(run));
+  check_outputs({o.output}, files_of(run));
   const std::vector<std::string> mounts = mounts_of(run);
   const io::RigFile rig = io::read_rig(run.rig, run.outer_axis, run.inner_axis, mounts);
   if (o.output.empty()) std::fprintf(stderr, "without -o the calibration is printed and not written\n");
@@ -123,6 +124,8 @@ ExitCode live(const Options& o, SharedState& state) {
     if (entered && now - changed > kTwice) session.next();
     words.say(shown);
   }
+  end_on_signals();  // all is recorded: what remains can be begun again
+  if (interrupted()) return ExitCode::kInterrupted;
   state.change([](LiveState& s) {
     s.phase = Phase::kSolving;
     s.guidance = "solving";

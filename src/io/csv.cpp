@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "column_units.hpp"
@@ -123,6 +124,7 @@ LogLosses read_csv(const LogRequest& request, SampleSink& sink) {
                                                               : 0.0;
   double wrapped = 0.0;
   double last = 0.0;
+  bool warm = false;  // a temperature was told, and holds
   long long rows = 0;
   long long without_week = 0;
   std::vector<double> v(quantities.size());
@@ -138,7 +140,10 @@ LogLosses read_csv(const LogRequest& request, SampleSink& sink) {
     last = t;
     const std::int64_t utime =
         to_utime(t + wrapped + (week > 0 ? 1e6 * (static_cast<double>(kGpsEpoch) + v[week]) : 0.0), table);
-    if (temperature > 0 && std::isfinite(v[temperature])) sink.temperature(v[temperature]);  // a slow one: empty cells
+    if (temperature > 0 && v[temperature] != TextTable::kEmpty) {  // a slow one leaves cells empty
+      const bool was_warm = std::exchange(warm, std::isfinite(v[temperature]));
+      if (warm || was_warm) sink.temperature(v[temperature]);
+    }
     if (request.need_imu) sink.imu(utime, {Vec3<double>(v[1], v[2], v[3]), Vec3<double>(v[4], v[5], v[6])});
     if (request.need_encoder) sink.encoder(utime, v[angles], v[angles + 1]);
   }
@@ -169,6 +174,15 @@ void append_number(std::string& out, double value, char after) {
   out += after;
 }
 
+/// The seconds that are nearest to the stamp, of which any reader makes the same microseconds.
+void append_time(std::string& out, std::int64_t utime) {
+  std::array<char, 32> text{};
+  const double seconds = static_cast<double>(utime) / 1e6;
+  const auto result = std::to_chars(text.data(), text.data() + text.size(), seconds, std::chars_format::fixed);
+  out.append(text.data(), result.ptr);
+  out += ',';
+}
+
 /// Samples in one table, readings of encoders in another beside it.
 class CsvWriter final : public LogWriter {
  public:
@@ -178,14 +192,20 @@ class CsvWriter final : public LogWriter {
   }
   void imu(std::int64_t utime, const InertialSample<double>& sample) override {
     row_.clear();
-    append_number(row_, 1e-6 * static_cast<double>(utime), ',');
+    append_time(row_, utime);
     for (int i = 0; i < 3; ++i) append_number(row_, sample.w(i), ',');
     for (int i = 0; i < 3; ++i) append_number(row_, sample.f(i), ',');
-    if (std::isfinite(celsius_)) append_number(row_, celsius_, '\n');
-    if (row_.back() != '\n') row_ += '\n';
+    if (told_) {
+      append_number(row_, celsius_, '\n');
+    } else {
+      row_ += '\n';
+    }
     samples_.write(row_);
   }
-  void temperature(double celsius) override { celsius_ = celsius; }
+  void temperature(double celsius) override {
+    celsius_ = celsius;
+    told_ = true;
+  }
   void encoder(std::int64_t utime, double azimuth, double pitch) override {
     if (!readings_) {
       encoder_path_ = encoder_table_of(path_);
@@ -193,7 +213,7 @@ class CsvWriter final : public LogWriter {
       readings_->write("t_s,azimuth_rad,pitch_rad\n");
     }
     row_.clear();
-    append_number(row_, 1e-6 * static_cast<double>(utime), ',');
+    append_time(row_, utime);
     append_number(row_, azimuth, ',');
     append_number(row_, pitch, '\n');
     readings_->write(row_);
@@ -217,7 +237,8 @@ class CsvWriter final : public LogWriter {
   WholeFile samples_;
   std::optional<WholeFile> readings_;
   std::string row_;
-  double celsius_ = std::nan("");
+  double celsius_ = 0.0;  // "nan" once it is known no more
+  bool told_ = false;
 };
 
 }  // namespace

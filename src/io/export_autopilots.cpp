@@ -10,6 +10,7 @@
 #include <cstdio>
 
 #include "export_formats.hpp"
+#include "trunnion/core/error.hpp"
 
 namespace trunnion::io {
 namespace {
@@ -25,8 +26,19 @@ struct Parameters {
 Vec3<double> single(const Vec3<double>& v) { return v.cast<float>().cast<double>(); }
 
 /// A diagonal in place of the inverse matrix: its own.
+/// @throws Error (input) for what no vehicle takes: scales that are not near one, offsets that are not finite
 Parameters parameters_of(const InertialUnit<double>& unit) {
-  return {single(unit.accel.bias), single(unit.accel.matrix().inverse().diagonal()), single(unit.gyro.bias)};
+  constexpr double kLeast = 0.5;  // of a scale that corrects
+  constexpr double kMost = 2.0;
+  const Parameters p{single(unit.accel.bias), single(unit.accel.matrix().inverse().diagonal()), single(unit.gyro.bias)};
+  if (!(p.accel_scale.array() > kLeast && p.accel_scale.array() < kMost).all())
+    throw Error(ExitCode::kInput,
+                "a vehicle corrects each axis for itself, and the scales would be " + listed(p.accel_scale, ", ") +
+                    ": for a unit that is mounted turned, calibrate in the axes of its board, and set "
+                    "the board's rotation in the vehicle");
+  if (!p.accel_offset.allFinite() || !p.gyro_offset.allFinite())
+    throw Error(ExitCode::kInput, "the biases are too large for single precision");
+  return p;
 }
 
 std::string nine_digits(double value) {

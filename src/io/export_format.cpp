@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include <Eigen/LU>
 
@@ -36,8 +37,10 @@ const std::vector<Vec3<double>>& directions() {
   return kAll;
 }
 
+/// What is no number is larger than any.
 InertialSample<double> larger(const InertialSample<double>& a, const InertialSample<double>& b) {
-  return {a.w.cwiseMax(b.w.cwiseAbs()), a.f.cwiseMax(b.f.cwiseAbs())};
+  const auto size = [](double x) { return std::isnan(x) ? std::numeric_limits<double>::infinity() : std::abs(x); };
+  return {a.w.cwiseMax(b.w.unaryExpr(size)), a.f.cwiseMax(b.f.unaryExpr(size))};
 }
 
 struct Term {

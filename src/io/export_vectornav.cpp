@@ -9,6 +9,7 @@
 #include <cstdio>
 
 #include "export_formats.hpp"
+#include "trunnion/core/error.hpp"
 
 namespace trunnion::io {
 namespace {
@@ -17,6 +18,8 @@ struct Register {
   Mat3<double> C;
   Vec3<double> B;
 };
+
+constexpr std::size_t kLongestCommand = 249;  // of 255 bytes with $, checksum and line end
 
 /// "$" and the command, its checksum behind "*".
 std::string command(const std::string& text) {
@@ -39,6 +42,9 @@ std::string write_register(int number, const Register& r) {
     for (int k = 0; k < 3; ++k) text += "," + nine_decimals(r.C(i, k));
   }
   for (int i = 0; i < 3; ++i) text += "," + nine_decimals(r.B(i));
+  if (text.size() > kLongestCommand)
+    throw Error(ExitCode::kInput,
+                "register " + std::to_string(number) + " would be longer than a command may be: " + text);
   return command(text);
 }
 

@@ -174,11 +174,14 @@ LogLosses read_lcm_recording(const LogRequest& request, SampleSink& sink) {
     } else if (others.size() < kNamedChannels && others.find(event.channel) == others.end()) {
       others.emplace(event.channel);
     }
-    if (request.progress && ++events % kEventsPerProgress == 0)
+    ++events;
+    if (request.progress && events % kEventsPerProgress == 0)
       request.progress(static_cast<double>(event.byte) / static_cast<double>(log.size()));
   }
   if (lost > 0)
     decoder.lose(lost, input_error_at_byte(request.path, damage, "", "before it is what belongs to no record"));
+  if (events == 0)
+    throw input_error(request.path, 0, "", "is of no format that is read, nor has it one whole LCM event");
   decoder.finish(log.size());
   std::string others_named;
   for (const std::string& name : others)

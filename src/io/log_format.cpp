@@ -57,7 +57,7 @@ const Stranger kStrangers[] = {
       5},
      "is compressed with xz: expand it (unxz -k)"},
     {{"BZh", 3}, "is compressed with bzip2: expand it (bunzip2 -k)"},
-    {{"PK\x03\x04", 4}, "is a zip archive: take the file out of it"},
+    {{"PK\x03\x04", 4}, "is a zip archive: take the file out of it; a workbook (.xlsx) is to be saved as CSV"},
     {{"#ROSBAG V", 9}, "is a bag of ROS 1: convert it (rosbags-convert --dst-storage mcap)"},
     {{"SQLite format 3", 15},
      "is a database, as ROS 2 records into by default before Iron: convert it (ros2 bag convert) to MCAP"},

@@ -53,7 +53,7 @@ class AtByte {
 class NameList {
  public:
   void add(const std::string& name) {
-    if (names_++ < kMost) text_ += (text_.empty() ? "" : ", ") + printable(name);
+    if (names_++ < kMost) text_ += (text_.empty() ? "" : ", ") + printable(name.substr(0, kLongest));
   }
   [[nodiscard]] bool empty() const { return names_ == 0; }
   [[nodiscard]] std::string text() const {
@@ -62,6 +62,7 @@ class NameList {
 
  private:
   static constexpr std::size_t kMost = 20;
+  static constexpr std::size_t kLongest = 256;  // bytes
   std::string text_;
   std::size_t names_ = 0;
 };

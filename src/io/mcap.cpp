@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the trunnion authors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// MCAP, the container of ROS 2's recordings. Chunks hold records in turn, compressed. Read from front to back: what
-// comes after the data, and the indices, are passed over, so a recording that was cut is read, too.
+// MCAP, the container of ROS 2's recordings. Chunks hold records in turn, compressed. Read from front to back, without
+// the indices, so a recording that was cut is read, too; one that was finished has counts that what was read is held
+// to.
 
 #include <lz4frame.h>
 #include <zstd.h>
@@ -25,6 +26,7 @@ namespace {
 constexpr std::uint64_t kLargestChunk = std::uint64_t{1} << 28U;
 constexpr std::uint64_t kLargestRecord = std::uint64_t{1} << 28U;  // of what is read
 constexpr std::size_t kLongestName = 1024;                         // of a topic, a type or an encoding: ROS has 255
+constexpr double kTolerableLoss = 0.01;                            // of the messages
 constexpr std::uint64_t kJitter = 100000000;                       // ns, by which recorders mix up what comes at once
 
 /// Members of a record, one after the other.
@@ -133,35 +135,40 @@ class McapReader {
 
   LogLosses read() {
     stream_.skip(stream_.have(kMcapMagic.size()) ? kMcapMagic.size() : stream_.available());
-    bool ended = false;
-    std::int64_t cut = 0;
+    bool data_ended = false;
     ByteProgress progress(request_.progress);
-    while (!ended && stream_.have(kMcapRecordHeader)) {
+    while (left() > kMcapMagic.size() && stream_.have(kMcapRecordHeader)) {
+      byte_ = stream_.offset();
       const auto kind = static_cast<McapKind>(stream_.data()[0]);
       const auto length = load_little<std::uint64_t>(stream_.data() + 1);
-      const auto rest = static_cast<std::uint64_t>(stream_.size() - stream_.offset()) - kMcapRecordHeader;
-      const bool wanted = kind >= McapKind::kSchema && kind <= McapKind::kChunk;
-      if (kind == McapKind{} || length > rest ||
-          (wanted && length > (kind == McapKind::kChunk ? kLargestChunk : kLargestRecord)))
-        break;
+      const bool wanted = (kind >= McapKind::kSchema && kind <= McapKind::kChunk) || kind == McapKind::kStatistics;
+      if (kind == McapKind{} || length > left() - kMcapRecordHeader || (wanted && length > kLargestRecord)) break;
       if (wanted) {
         if (!stream_.have(kMcapRecordHeader + static_cast<std::size_t>(length))) break;
-        byte_ = stream_.offset();
         take(kind, {stream_.data() + kMcapRecordHeader, static_cast<std::size_t>(length)});
       }
       stream_.pass(kMcapRecordHeader + length);
-      ended = kind == McapKind::kDataEnd || kind == McapKind::kFooter;
+      data_ended = data_ended || (kind == McapKind::kDataEnd && length == kMcapDataEnd);
       progress.show(stream_);
     }
-    if (!ended) cut = std::max<std::int64_t>(stream_.size() - stream_.offset(), 1);
-    while (stream_.have(1)) stream_.skip(stream_.available());  // the digest is of all
+    const auto unread = static_cast<std::int64_t>(left());
+    const bool closed = is_closed();
+    const std::int64_t cut = closed || data_ended ? 0 : std::max<std::int64_t>(unread, 1);
+    if (closed && unread > static_cast<std::int64_t>(kMcapMagic.size()))
+      intake_.lose(unread, AtByte(request_.path, byte_)("record", "has a kind or a length that cannot be"));
     finish(cut);
     std::string note = intake_.first_loss();
+    const auto add = [&](const std::string& words) { note += (note.empty() ? "" : "; ") + words; };
     if (other_joints_ > 0)
-      note += (note.empty() ? "" : "; ") + std::to_string(other_joints_) + " joint states passed over; the first " +
-              other_joint_ + " (axes: of a run file names them)";
-    if (cut > 0) note += (note.empty() ? "" : "; ") + std::string("the recording was not ended");
-    return losses_of(intake_, cut, note);
+      add(std::to_string(other_joints_) + " joint states passed over; the first " + other_joint_ +
+          " (axes: of a run file names them)");
+    const long long readings = missing(Role::kEncoder);
+    if (readings > 0)
+      add(std::to_string(readings) + " readings of the encoders, of those that it counts, are not there");
+    if (cut > 0) add("the recording was not ended");
+    LogLosses losses = losses_of(intake_, cut, note);
+    losses.samples = missing(Role::kImu);
+    return losses;
   }
 
  private:
@@ -175,11 +182,22 @@ class McapReader {
     std::int64_t chunk = 0;   // where the last one with its messages is
     std::uint64_t first = 0;  // ns, of its messages there
     std::uint64_t last = 0;
+    std::uint64_t messages = 0;  // seen
+    std::uint64_t counted = 0;   // by the recorder
   };
+
+  [[nodiscard]] std::uint64_t left() const { return static_cast<std::uint64_t>(stream_.size() - stream_.offset()); }
+
+  /// Goes on to the end, for the digest is of all. @return whether it ends as a recording that was finished
+  bool is_closed() {
+    while (stream_.have(kMcapMagic.size() + 1)) stream_.skip(stream_.available() - kMcapMagic.size());
+    return std::string_view(stream_.data(), stream_.available()) == kMcapMagic;
+  }
 
   void take(McapKind kind, std::string_view record) {
     if (kind == McapKind::kMessage) return message(record);
     if (kind == McapKind::kChunk) return chunk(record);
+    if (kind == McapKind::kStatistics) return statistics(record);
     Fields fields(record);
     const auto id = fields.number<std::uint16_t>();
     if (kind == McapKind::kSchema) {
@@ -233,8 +251,10 @@ class McapReader {
     const auto log_time = fields.number<std::uint64_t>();
     fields.number<std::uint64_t>();
     if (!fields.whole()) return damage(record.size(), "message", "is shorter than its members");
-    if (channel == channels_.end() || channel->second.role == Role::kOther) return;
+    if (channel == channels_.end()) return damage(record.size(), "message", "is of a channel that nothing describes");
+    if (channel->second.role == Role::kOther) return;
     Channel& of = channel->second;
+    ++of.messages;
     follow(of, log_time);
     std::string wrong;
     if (of.role == Role::kImu) {
@@ -296,6 +316,29 @@ class McapReader {
     if (!records.empty()) damage(records.size(), "chunk", "ends within a record");
   }
 
+  /// How many messages the recorder wrote, by channel.
+  void statistics(std::string_view record) {
+    Fields fields(record);
+    fields.bytes(kMcapTotals);
+    Fields counts(fields.text());
+    if (!fields.whole()) return;
+    while (!counts.rest().empty()) {
+      const auto id = counts.number<std::uint16_t>();
+      const auto count = counts.number<std::uint64_t>();
+      const auto channel = channels_.find(id);
+      if (counts.whole() && channel != channels_.end()) channel->second.counted = count;
+    }
+  }
+
+  /// Messages that the recorder counted and that were not found.
+  [[nodiscard]] long long missing(Role role) const {
+    std::uint64_t sum = 0;
+    for (const auto& [id, channel] : channels_) {
+      if (channel.role == role && channel.counted > channel.messages) sum += channel.counted - channel.messages;
+    }
+    return static_cast<long long>(sum);
+  }
+
   void damage(std::size_t bytes, const std::string& field, const std::string& what) {
     intake_.damage(bytes, AtByte(request_.path, byte_)(printable(field), what));
   }
@@ -316,6 +359,15 @@ class McapReader {
     if (empty && cut > 0) holds += ", and was cut there";
     if (empty && !intake_.first_loss().empty()) throw Error(ExitCode::kInput, intake_.first_loss());
     require(request_, intake_, stream_.size(), holds);
+    for (const auto& [id, channel] : channels_) {
+      const bool read = channel.role == Role::kImu || (channel.role == Role::kEncoder && request_.need_encoder);
+      if (read && channel.counted > channel.messages &&
+          static_cast<double>(channel.counted - channel.messages) >
+              kTolerableLoss * static_cast<double>(channel.counted))
+        throw input_error(request_.path, 0, printable(channel.topic),
+                          "has " + std::to_string(channel.messages) + " messages, of " +
+                              std::to_string(channel.counted) + " that the recorder counted: the file is damaged");
+    }
   }
 
   const LogRequest& request_;

@@ -19,6 +19,8 @@ namespace trunnion::io {
 
 constexpr std::string_view kMcapMagic("\x89MCAP0\r\n", 8);
 constexpr std::size_t kMcapRecordHeader = 9;  // bytes: kind and length
+constexpr std::uint64_t kMcapDataEnd = 4;     // bytes of content: a checksum
+constexpr std::size_t kMcapTotals = 42;       // bytes of statistics before the counts by channel
 
 enum class McapKind : std::uint8_t {
   kHeader = 1,

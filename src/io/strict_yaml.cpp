@@ -79,7 +79,11 @@ StrictYaml StrictYaml::load(const std::string& file, const std::string& format) 
   const std::string text = read_whole(file, kLargestYaml);
   if (too_deep(text)) throw input_error(file, 0, "", "is nested too deep");
   try {
-    YAML::Node node = YAML::Load(text);
+    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
+    if (documents.size() > 1)
+      throw input_error(file, documents[1].Mark().line + 1, "",
+                        "holds more than one document: each is a file of its own");
+    const YAML::Node node = documents.empty() ? YAML::Node() : documents.front();
     if (!node.IsMap()) throw input_error(file, 1, "", "is not a YAML map of keys, as " + format + " is");
     StrictYaml root(file, "", node);
     const std::string found = root.at("format").text();

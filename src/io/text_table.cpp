@@ -34,10 +34,39 @@ bool is_outside_quotes(std::string_view line, char wanted) {
   return false;
 }
 
-bool starts_number(const char* p, const char* end) {
-  if (p != end && (*p == '+' || *p == '-')) ++p;
-  return p != end && ((*p >= '0' && *p <= '9') || *p == '.');
+bool starts_number(std::string_view line) {
+  line.remove_prefix(std::min(line.find_first_not_of(" \t\""), line.size()));
+  if (!line.empty() && (line[0] == '+' || line[0] == '-')) line.remove_prefix(1);
+  return !line.empty() && ((line[0] >= '0' && line[0] <= '9') || line[0] == '.');
 }
+
+bool is_comment(std::string_view line) { return !line.empty() && (line[0] == '#' || line[0] == '%'); }
+
+char separator_of(std::string_view line) {
+  return is_outside_quotes(line, ',') ? ',' : is_outside_quotes(line, ';') ? ';' : ' ';
+}
+
+/// Empty ones at the end are none.
+std::size_t cells_in(std::string_view line, char separator) {
+  const auto parts = [separator](char c) { return c == separator || (separator == ' ' && c == '\t'); };
+  std::size_t cells = 0;
+  std::size_t filled = 0;
+  bool quoted = false;
+  bool in_cell = false;
+  for (const char c : line) {
+    if (c == '"') quoted = !quoted;
+    if (!quoted && parts(c)) {
+      if (in_cell || separator != ' ') ++cells;
+      in_cell = false;
+    } else if (c != ' ' && c != '\t' && c != '\r' && c != '\n') {
+      in_cell = true;
+      filled = cells + 1;
+    }
+  }
+  return filled;
+}
+
+constexpr const char* kReturnWithin = "has a carriage return within: lines should end in a line feed";
 
 }  // namespace
 
@@ -49,11 +78,12 @@ TextTable::TextTable(const std::string& path, Sha256* digest) : path_(path), tex
   end_ = next_ + text_.size();
   if (std::string_view(text_).substr(0, kByteOrderMark.size()) == kByteOrderMark) next_ += kByteOrderMark.size();
   skip_preamble();
+  skip_comments();
   const std::string_view first = current_line();
-  separator_ = is_outside_quotes(first, ',') ? ',' : is_outside_quotes(first, ';') ? ';' : ' ';
-  const char* p = first.data();
-  while (p != first.data() + first.size() && (*p == ' ' || *p == '\t' || *p == '"')) ++p;
-  if (!starts_number(p, first.data() + first.size())) {
+  separator_ = separator_of(first);
+  if (first.substr(0, first.find_last_not_of('\r') + 1).find('\r') != std::string_view::npos)
+    throw input_error(path_, line_ + 1, "", kReturnWithin);
+  if (!starts_number(first)) {
     read_header(std::string(first));
     header_line_ = line_ + 1;
     next_line();
@@ -84,10 +114,15 @@ void TextTable::choose(const std::vector<std::string>& quantities, const ColumnM
     } else {
       column.si = unit_in_si(quantity, unit);
     }
+    for (const Column& other : columns_) {
+      if (other.index == column.index)
+        throw input_error(path_, header_line_, quantity, "is of the same column as " + other.quantity);
+    }
     column.is_time = quantity == "t";
     if (!column.is_time && quantity != kWeek) column.largest = SampleIntake::kLargestReading;
     column.optional = quantity == kTemperature;
     column.sparse = sparse_ && !column.is_time && quantity != kWeek;
+    if (column.sparse) ++sparse_columns_;
     columns_.push_back(column);
     last_ = std::max(last_, column.index);
     if (!column.optional) needed_ = std::max(needed_, column.index);
@@ -96,9 +131,8 @@ void TextTable::choose(const std::vector<std::string>& quantities, const ColumnM
 }
 
 bool TextTable::row(double* value) {
-  const auto sparse = std::count_if(columns_.begin(), columns_.end(), [](const Column& c) { return c.sparse; });
   while (read_row()) {
-    if (sparse > 0 && empty_ == sparse) continue;  // a row of something else
+    if (sparse_columns_ > 0 && empty_ == sparse_columns_) continue;  // a row of something else
     convert(value);
     return true;
   }
@@ -130,8 +164,8 @@ std::optional<KnownTable> TextTable::known() const {
 bool TextTable::read_row() {
   const auto is_blank = [&] {
     const char* p = next_;
-    while (p != end_ && (*p == ' ' || *p == '\t' || *p == '\r')) ++p;
-    return p == end_ || *p == '\n' || *p == '#';
+    while (p != end_ && (*p == ' ' || *p == '\t' || *p == '\r' || *p == separator_)) ++p;
+    return p == end_ || *p == '\n' || *p == '#' || *p == '%';
   };
   while (next_ != end_ && is_blank()) next_line();
   if (next_ == end_) return false;
@@ -143,7 +177,6 @@ bool TextTable::read_row() {
   for (; found <= last_; ++found) {
     while (p != end_ && (*p == ' ' || (*p == '\t' && separator_ == ' '))) ++p;
     if (!after_separator && (p == end_ || *p == '\n' || *p == '\r')) break;
-    after_separator = false;
     const bool quoted = p != end_ && *p == '"';
     if (quoted) ++p;
     const char* from = p != end_ && *p == '+' ? p + 1 : p;
@@ -159,16 +192,16 @@ bool TextTable::read_row() {
     if (!number || std::string_view(p, static_cast<std::size_t>(cell_end - p)).find_first_not_of(" \t") !=
                        std::string_view::npos) {
       const Column* const column = column_at(found);
-      cells_[found] = std::nan("");
       const bool empty = !number && cell_end == p;
+      cells_[found] = empty ? kEmpty : std::nan("");
       if (column != nullptr && column->sparse && empty) {
         ++empty_;
       } else if (column != nullptr && !column->optional) {
-        throw input_error(path_, line_, column->quantity,
-                          "should be a number, is '" + printable(std::string(number ? from : p, cell_end)) + "'" +
-                              (separator_ != ',' && std::find(p, cell_end, ',') != cell_end
-                                   ? ": a decimal comma, where a point is read"
-                                   : ""));
+        throw input_error(
+            path_, line_, column->quantity,
+            "should be a number, is '" + printable(std::string(number ? from : p, cell_end)) + "'" +
+                (number && *p == ',' && std::count(p, cell_end, ',') == 1 ? ": a decimal comma, where a point is read"
+                                                                          : ""));
       }
     }
     p = quoted ? end_of_cell(cell_end, false) : cell_end;
@@ -180,13 +213,19 @@ bool TextTable::read_row() {
         path_, line_, "",
         "row too short: " + std::to_string(found) + " columns, " + std::to_string(needed_ + 1) + " needed");
   }
-  for (; found <= last_; ++found) cells_[found] = std::nan("");
+  std::fill(cells_.begin() + static_cast<std::ptrdiff_t>(found), cells_.end(), kEmpty);
   next_ = p;
   skip_rest();
   const auto* feed = static_cast<const char*>(std::memchr(p, '\r', static_cast<std::size_t>(next_ - p)));
   while (feed != nullptr && feed != next_ && *feed == '\r') ++feed;
-  if (feed != nullptr && feed != next_ && *feed != '\n')
-    throw input_error(path_, line_, "", "has a carriage return within: lines should end in a line feed");
+  if (feed != nullptr && feed != next_ && *feed != '\n') throw input_error(path_, line_, "", kReturnWithin);
+  if (has_header() && (after_separator || separator_ == ' ')) {
+    const std::size_t cells = found + cells_in({p, static_cast<std::size_t>(next_ - p)}, separator_);
+    if (cells > names_.size())
+      throw input_error(path_, line_, "",
+                        "has " + std::to_string(cells) + " cells under a header of " + std::to_string(names_.size()) +
+                            ": decimal commas, or names of rows that the header has no name for?");
+  }
   return true;
 }
 
@@ -205,7 +244,7 @@ void TextTable::convert(double* value) {
   for (std::size_t i = 0; i < columns_.size(); ++i) {
     const double cell = cells_[columns_[i].index];
     if (columns_[i].optional) {
-      value[i] = SampleIntake::known_temperature(cell);
+      value[i] = cell == kEmpty ? kEmpty : SampleIntake::known_temperature(cell);
       continue;
     }
     if (!std::isfinite(cell)) throw input_error(path_, line_, columns_[i].quantity, "is not finite");
@@ -243,9 +282,31 @@ void TextTable::skip_preamble() {
   }
 }
 
-std::string_view TextTable::current_line() const {
-  const auto* newline = static_cast<const char*>(std::memchr(next_, '\n', static_cast<std::size_t>(end_ - next_)));
-  return {next_, static_cast<std::size_t>((newline != nullptr ? newline : end_) - next_)};
+void TextTable::skip_comments() {
+  const auto is_empty = [](std::string_view line) { return line.find_first_not_of(" \t\r") == std::string_view::npos; };
+  while (next_ != end_ && is_comment(current_line())) {
+    const std::string_view line = current_line();
+    const char* const from = next_;
+    const long long at = line_;
+    next_line();
+    while (next_ != end_ && is_empty(current_line())) next_line();
+    const std::string_view next = current_line();
+    const std::string_view names = line.substr(std::min(line.find_first_not_of("#% "), line.size()));
+    const bool tabs = separator_of(next) == ' ' && names.find('\t') != std::string_view::npos;
+    const char separator = tabs ? '\t' : separator_of(next);
+    const std::size_t named = cells_in(names, separator);
+    const std::size_t numbers = cells_in(next, separator);
+    if (starts_number(next) && (separator == ' ' ? named == numbers : named >= numbers)) {
+      next_ = from;
+      line_ = at;
+      return;
+    }
+  }
+}
+
+std::string_view TextTable::rest_of_line(const char* from) const {
+  const auto* newline = static_cast<const char*>(std::memchr(from, '\n', static_cast<std::size_t>(end_ - from)));
+  return {from, static_cast<std::size_t>((newline != nullptr ? newline : end_) - from)};
 }
 
 void TextTable::skip_rest() {
@@ -271,7 +332,7 @@ void TextTable::read_header(const std::string& line) {
   bool quoted = false;
   const auto end_name = [&] {
     while (!name.empty() && (name.back() == ' ' || name.back() == '\r')) name.pop_back();
-    if (!name.empty() && name[0] == '#') name.erase(0, name.find_first_not_of("# "));
+    if (is_comment(name)) name.erase(0, name.find_first_not_of("#% "));
     if (separator_ != ' ' || !name.empty()) names_.push_back(name);
     name.clear();
   };

@@ -36,6 +36,8 @@ struct KnownTable {
 
 class TextTable {
  public:
+  static constexpr double kEmpty = std::numeric_limits<double>::infinity();  ///< of a temperature: no word of it
+
   TextTable(const std::string& path, Sha256* digest);
   /// Finds the columns of the quantities, by map or by header. @throws Error naming what is missing
   void choose(const std::vector<std::string>& quantities, const ColumnMap& map, const SensorSheet& sheet);
@@ -79,7 +81,10 @@ class TextTable {
   void convert(double* value);
   /// Lines above the header, as the programs that export tables write them.
   void skip_preamble();
-  [[nodiscard]] std::string_view current_line() const;
+  /// Lines that begin with # or % above the header; one that has a name for each cell of the row below is the header.
+  void skip_comments();
+  [[nodiscard]] std::string_view rest_of_line(const char* from) const;
+  [[nodiscard]] std::string_view current_line() const { return rest_of_line(next_); }
   void skip_rest();
   void next_line();
   const Column* column_at(std::size_t index) const;
@@ -102,7 +107,8 @@ class TextTable {
   std::size_t last_ = 0;
   std::size_t needed_ = 0;
   bool sparse_ = false;
-  std::ptrdiff_t empty_ = 0;  // cells of sparse columns in the last row
+  int sparse_columns_ = 0;
+  int empty_ = 0;  // cells of sparse columns in the last row
   double microseconds_ = 0.0;
   long long line_ = 0;
 };

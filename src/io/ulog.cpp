@@ -29,6 +29,7 @@ constexpr int kSureAfter = 4;                         // messages in a row, that
 constexpr std::size_t kFlagBytes = 16;                // of a B message, before the offsets of what was appended
 constexpr std::size_t kMostAppended = 3;
 constexpr std::size_t kMostFormats = 4096;
+constexpr std::size_t kMostTopics = 1000;  // that are named
 constexpr int kMostNesting = 8;
 constexpr int kMostFields = 10000;  // of a topic with those nested in it
 constexpr std::size_t kLongestMessage = 65535;
@@ -166,7 +167,8 @@ class UlogReader {
         if (readable == is_readable(name)) topics.add(name);
       }
     }
-    require(request_, intake_, stream_.size(), topics.empty() ? "" : "topics " + topics.text());
+    require(request_, intake_, stream_.size(),
+            topics.empty() ? "" : "topics " + topics.text() + "; sensor_combined or vehicle_imu is read");
     std::string note;
     for (const NameList* own : {&rotations_, &offsets_}) {
       if (!own->empty()) note += (note.empty() ? "the vehicle's own " : ", ") + own->text();
@@ -283,7 +285,7 @@ class UlogReader {
   }
 
   void subscribe(const std::string& instance, std::uint16_t number, const std::string& topic) {
-    topics_.insert(topic + (instance == "0" ? "" : "#" + instance));
+    if (topics_.size() < kMostTopics) topics_.insert(topic + (instance == "0" ? "" : "#" + instance));
     if (number_ == number && topic != chosen_) number_.reset();  // given to another topic
     const bool wanted = topic_.empty() ? (topic == kCombined || topic == kIntegrals) : topic == topic_;
     if (!wanted || instance != instance_) return;

@@ -73,7 +73,7 @@ TEST_F(ForeignTables, InQuotes) {
       "\"t_s\",\"gyro_x_rad_s\",\"gyro_y_rad_s\",\"gyro_z_rad_s\",\"place, \"\"here\"\"\",\"accel_x_m_s2\","
       "\"accel_y_m_s2\",\"accel_z_m_s2\"\r\n"
       "\"1\",\"0.25\",-0.5,\"0.125\",\"a, \"\"b\"\", c\",1.5,\"-2.25\",\"9.75\"\r\n"
-      "\"+2\",0.25,-0.5,0.125,,1.5,-2.25,\"9.75\" ,x\r\n");
+      "\"+2\",0.25,-0.5,0.125,,1.5,-2.25,\"9.75\" ,\r\n");
   EXPECT_THAT(collect_->stamps, ElementsAre(1000000, 2000000));
   for (const InertialSample<double>& sample : collect_->samples) {
     EXPECT_EQ(sample.w, kSample.w);
@@ -98,6 +98,49 @@ TEST_F(ForeignTables, WithEmptyRowsAndRowsOfNoNumber) {
   EXPECT_EQ(collect_->samples.size(), 2U) << "of another instrument";
   EXPECT_REFUSES(ExitCode::kInput, "a.log:3: gyro_x: is not finite",
                  read(header + row + "2000,nan,nan,nan,nan,nan,nan\n"));
+}
+
+TEST_F(ForeignTables, WithCommentsAboveTheHeader) {
+  const std::string header = "t_s,gyro_x_rad_s,gyro_y_rad_s,gyro_z_rad_s,accel_x_m_s2,accel_y_m_s2,accel_z_m_s2\n";
+  const std::string row = "1,0.25,-0.5,0.125,1.5,-2.25,9.75\n";
+  for (const std::string above : {"# by hand, on the bench\n", "% a\n\n% b, c\n", "#\n", "# 1\n# 2\n"}) {
+    read(above + header + row);
+    EXPECT_EQ(collect_->samples.size(), 1U) << above;
+    read(above + "# " + header + "\n" + row);
+    EXPECT_EQ(collect_->samples.size(), 1U) << above;
+  }
+  constexpr const char* kAxes[] = {"gyro_x", "gyro_y", "gyro_z", "accel_x", "accel_y", "accel_z"};
+  LogRequest by_index;
+  by_index.columns["t"] = {"", 0, "s"};
+  for (int k = 0; k < 6; ++k) by_index.columns[kAxes[k]] = {"", k + 1, k < 3 ? "rad/s" : "m/s^2"};
+  read("% no names\n" + row, by_index);
+  EXPECT_EQ(collect_->samples[0].f, kSample.f);
+  EXPECT_REFUSES(ExitCode::kInput, "has no header", read("% no names\n" + row));
+}
+
+TEST_F(ForeignTables, WhoseRowsDoNotFitTheirHeader) {
+  const std::string header = "t_s,gyro_x_rad_s,gyro_y_rad_s,gyro_z_rad_s,accel_x_m_s2,accel_y_m_s2,accel_z_m_s2\n";
+  const std::string row = "1,0.25,-0.5,0.125,1.5,-2.25,9.75";
+  EXPECT_REFUSES(ExitCode::kInput, "a.log:3: has 8 cells under a header of 7",
+                 read(header + row + "\n" + row + ",8\n"));
+  EXPECT_REFUSES(ExitCode::kInput, "a.log:2: has 14 cells under a header of 7",
+                 read(header + "0,000,0,100,0,200,0,300,0,100,0,200,9,800\n"));
+  std::string blanks = header + "\"1\" " + row;  // names of rows, as R writes them
+  std::replace(blanks.begin(), blanks.end(), ',', ' ');
+  EXPECT_REFUSES(ExitCode::kInput, "a.log:2: has 8 cells under a header of 7", read(blanks));
+  read(header + row + ",,\r\n,,,,,,\n" + row + ", \n");
+  EXPECT_EQ(collect_->samples.size(), 2U) << "empty cells and empty rows of a spreadsheet";
+  LogRequest twice;
+  twice.columns["gyro_y"] = {"gyro_x_rad_s", -1, "rad/s"};
+  EXPECT_REFUSES(ExitCode::kInput, "gyro_y: is of the same column as gyro_x", read(header + row, twice));
+  EXPECT_REFUSES(ExitCode::kInput, "a.log:1: has a carriage return within", read("a\rb\rc\n"));
+}
+
+TEST_F(ForeignTables, KnowATemperatureOrKnowItNoMore) {
+  read(
+      "t_s,gyro_x_rad_s,gyro_y_rad_s,gyro_z_rad_s,accel_x_m_s2,accel_y_m_s2,accel_z_m_s2,temperature_deg_c\n"
+      "1,1,2,3,4,5,6,nan\n2,1,2,3,4,5,6,25\n3,1,2,3,4,5,6,\n4,1,2,3,4,5,6\n5,1,2,3,4,5,6,nan\n6,1,2,3,4,5,6,-\n");
+  EXPECT_THAT(collect_->temperatures, ElementsAre(25.0, testing::IsNan()));
 }
 
 TEST_F(ForeignTables, WhoseLinesOrColumnsAreAmbiguous) {

@@ -189,7 +189,7 @@ TEST(LcmRecording, RefusesWhatItCannotUse) {
   EXPECT_REFUSES(ExitCode::kInput, "is empty",
                  read_lcm_recording(log_request(folder.file("empty.lcm", ""), {}, true), collect));
   EXPECT_REFUSES(
-      ExitCode::kInput, "bytes are damaged",
+      ExitCode::kInput, "is of no format that is read",
       read_lcm_recording(log_request(folder.file("noise.lcm", std::string(5000, '\xed')), {}, true), collect));
   LogChannels other;
   other.encoder.name = "TABLE";

@@ -4,9 +4,12 @@
 #include <lz4frame.h>
 #include <zstd.h>
 
+#include <cstring>
+
 #include "io/format_bytes.hpp"
 #include "io/log_reading.hpp"
 #include "trunnion/core/units.hpp"
+#include "trunnion/io/whole_file.hpp"
 
 namespace trunnion::io {
 namespace {
@@ -75,6 +78,51 @@ TEST_F(McapRecordings, InCompressedChunks) {
   }
   EXPECT_REFUSES(ExitCode::kInput, "zstd and lz4 are read",
                  read(mcap_head() + mcap_chunk("brotli", records, records.size(), crc) + mcap_end()));
+}
+
+TEST_F(McapRecordings, AreHeldToTheirOwnCounts) {
+  const std::unique_ptr<LogWriter> writer = format_by_name("mcap").write(folder_ / "x.mcap");
+  for (int k = 1; k <= 60000; ++k) writer->imu(10000LL * k, kSample);
+  writer->commit();
+  const std::string whole = read_whole(folder_ / "x.mcap");
+  std::vector<std::size_t> chunks;  // where they begin
+  for (std::size_t at = 8; at + 9 < whole.size();) {
+    std::uint64_t length = 0;
+    std::memcpy(&length, whole.data() + at + 1, 8);
+    if (whole[at] == 6) chunks.push_back(at);
+    at += 9 + length;
+  }
+  ASSERT_GT(chunks.size(), 2U);
+  EXPECT_EQ(read(whole).samples, 0);
+  for (const int kind : {2, 4, 7, 14, 15, 22, 38, 70, 134}) {  // a bit of the kind, and the end of the data
+    std::string damaged = whole;
+    damaged[chunks[1]] = static_cast<char>(kind);
+    EXPECT_REFUSES(ExitCode::kInput, "of 60000 that the recorder counted", read(damaged));
+  }
+  for (const char* wrong : {"kind", "length"}) {
+    std::string damaged = whole;
+    damaged.replace(chunks[1] + (wrong[0] == 'k' ? 0 : 7), 1, 1, wrong[0] == 'k' ? '\0' : '\x7f');
+    EXPECT_REFUSES(ExitCode::kInput, "has a kind or a length that cannot be", read(damaged));
+    EXPECT_THAT(read(damaged.substr(0, damaged.size() - 1)).note, testing::HasSubstr("was not ended"));
+  }
+}
+
+TEST_F(McapRecordings, SayWhichMessagesAreMissing) {
+  const std::string schema = mcap_schema(1, "sensor_msgs/msg/Imu") + mcap_channel(1, 1, "/imu", "cdr");
+  std::string messages;
+  for (std::uint32_t k = 1; k <= 199; ++k) messages += mcap_message(1, cdr_imu(k, 0, kSample));
+  const auto counted = [](char count) {
+    std::string totals(42, '\0');
+    const std::string of_channel{'\x0a', '\0', '\0', '\0', '\x01', '\0', count,
+                                 '\0',   '\0', '\0', '\0', '\0',   '\0', '\0'};
+    return mcap_record(11, totals + of_channel);
+  };
+  EXPECT_EQ(read(mcap_head() + schema + messages + counted('\xc7') + mcap_end()).samples, 0);
+  EXPECT_EQ(read(mcap_head() + schema + messages + counted('\xc8') + mcap_end()).samples, 1);
+  EXPECT_REFUSES(ExitCode::kInput, "/imu: has 199 messages, of 202",
+                 read(mcap_head() + schema + messages + counted('\xca') + mcap_end()));
+  EXPECT_REFUSES(ExitCode::kInput, "is of a channel that nothing describes",
+                 read(mcap_head() + mcap_message(2, cdr_imu(1, 0, kSample)) + schema + messages + mcap_end()));
 }
 
 TEST_F(McapRecordings, ThatWasCut) {

@@ -58,6 +58,15 @@ struct Triad {
     return asymmetry.isZero(T(0)) && quadratic.isZero(T(0)) && cubic.isZero(T(0));
   }
 
+  /// Whether eq. (2) can be relied on for what came out as @p u: each slope of n there is below a half. False for
+  /// what is not finite.
+  [[nodiscard]] bool converges_at(const Vec3<T>& u) const {
+    const auto size = u.array().abs();
+    const auto slope =
+        T(0.5) * asymmetry.array().abs() + size * (T(2) * quadratic.array().abs() + T(3) * cubic.array().abs() * size);
+    return (slope < T(0.5)).all();
+  }
+
   /// What the sensors read for the true input @p u, eq. (1).
   [[nodiscard]] Vec3<T> distort(const Vec3<T>& u) const { return u + M * u + bias + nonlinearity(u); }
 
