@@ -6,11 +6,14 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 
 #include "terminal.hpp"
 #include "trunnion/core/error.hpp"
+#include "trunnion/io/whole_file.hpp"
 
 namespace trunnion::app {
 namespace {
@@ -43,14 +46,14 @@ void check_outputs(const std::vector<std::string>& outputs, const std::vector<st
       if (!in.empty() && std::filesystem::equivalent(out, in, error) && !error)
         throw Error(ExitCode::kUsage, out + ": would overwrite an input");
     }
-    const std::filesystem::path whole = std::filesystem::absolute(out);
+    const std::filesystem::path whole = std::filesystem::absolute(io::written_path(out));
     std::error_code unresolved;
     const std::filesystem::path resolved = std::filesystem::weakly_canonical(whole, unresolved);
     if (std::find(seen.begin(), seen.end(), resolved) != seen.end())
       throw Error(ExitCode::kUsage, out + ": two outputs in one file");
     seen.push_back(resolved);
     if (::access(whole.parent_path().c_str(), W_OK) != 0)
-      throw Error(ExitCode::kInput, out + ": its folder cannot be written");
+      throw Error(ExitCode::kInput, out + ": its folder cannot be written: " + std::strerror(errno));
   }
 }
 

@@ -23,7 +23,7 @@ struct Parameters {
   Vec3<double> gyro_offset;
 };
 
-Vec3<double> single(const Vec3<double>& v) { return v.cast<float>().cast<double>(); }
+Vec3<double> single(const Vec3<double>& v) { return v.unaryExpr(&to_single); }
 
 /// A diagonal in place of the inverse matrix: its own.
 /// @throws Error (input) for what no vehicle takes: scales that are not near one, offsets that are not finite

@@ -142,9 +142,14 @@ std::vector<Omission> omissions(const ExportFormat& format, const ExportRequest&
   std::vector<Omission> all;
   const auto counts = [](double size, double of) { return size > 1e-9 * of; };
   ExportRequest one = request;
+  const auto is_turned = [](const Unit& unit) {
+    constexpr double kLeast = 0.1;
+    return unit.gyro.matrix().determinant() < kLeast || unit.accel.matrix().determinant() < kLeast;
+  };
   for (const Term& term : terms()) {
     one.unit = Unit();
     term.keep(request.unit, one.unit);
+    if (is_turned(one.unit)) continue;  // the scales alone of a unit whose axes are turned are those of none
     const InertialSample<double> size = departure_of(one.unit, format.make(one), rate);
     const double rounding = 4.0 * format.precision;
     if (counts(size.w.maxCoeff() - rounding * rate, rate) ||
@@ -172,6 +177,8 @@ InertialSample<double> corrected_in_steps(const Unit& unit, const InertialSample
   input.w = straight(unit.gyro, reading.w - unit.gyro.bias - unit.g_sensitivity * input.f);
   return input;
 }
+
+double to_single(double value) { return static_cast<double>(static_cast<float>(value)); }
 
 std::string exactly(double value) {
   std::array<char, 32> text{};

@@ -42,14 +42,13 @@ std::string write_register(int number, const Register& r) {
     for (int k = 0; k < 3; ++k) text += "," + nine_decimals(r.C(i, k));
   }
   for (int i = 0; i < 3; ++i) text += "," + nine_decimals(r.B(i));
-  if (text.size() > kLongestCommand)
-    throw Error(ExitCode::kInput,
-                "register " + std::to_string(number) + " would be longer than a command may be: " + text);
+  if (text.size() > kLongestCommand || !r.C.allFinite() || !r.B.allFinite())
+    throw Error(ExitCode::kInput, "register " + std::to_string(number) + " does not hold its numbers: " + text);
   return command(text);
 }
 
 Register register_of(const Triad<double>& triad) {
-  return {triad.matrix().inverse().cast<float>().cast<double>(), triad.bias.cast<float>().cast<double>()};
+  return {triad.matrix().inverse().unaryExpr(&to_single), triad.bias.unaryExpr(&to_single)};
 }
 
 Exported vectornav(const ExportRequest& request) {

@@ -66,8 +66,9 @@ class Unfinished {
 
 Unfinished unfinished;
 
-/// Where a file is that is not there yet: at the end of its links.
-std::string end_of_links(const std::string& path) {
+}  // namespace
+
+std::string written_path(const std::string& path) {
   constexpr int kMostLinks = 40;
   std::filesystem::path at(path);
   std::error_code none;
@@ -76,8 +77,6 @@ std::string end_of_links(const std::string& path) {
   return at.string();
 }
 
-}  // namespace
-
 void remove_unfinished() noexcept { unfinished.remove(); }
 
 WholeFile::WholeFile(std::string path) : path_(std::move(path)) {
@@ -85,8 +84,7 @@ WholeFile::WholeFile(std::string path) : path_(std::move(path)) {
   const bool replaces = ::stat(path_.c_str(), &status) == 0;
   if (replaces && S_ISDIR(status.st_mode)) throw input_error(path_, 0, "", "is a folder, not a file to write");
   if (replaces && !S_ISREG(status.st_mode)) throw input_error(path_, 0, "", "is a device, not a file to write");
-  // what a link points to is written, the link stays
-  path_ = replaces ? std::filesystem::canonical(path_).string() : end_of_links(path_);
+  path_ = written_path(path_);
   const std::string name = path_ + ".part-" + std::to_string(::getpid());
   for (int k = 0; k < kMostNames && descriptor_ < 0; ++k) {
     temporary_ = k == 0 ? name : name + "-" + std::to_string(k);

@@ -47,6 +47,28 @@ TEST(Triad, CorrectUndoesANonlinearDistortionToItsPromise) {
   }
 }
 
+TEST(Triad, ConvergesAtWhatCorrectUndoes) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  Draw draw(21);
+  for (int i = 0; i < 1000; ++i) {
+    Triad<double> triad;
+    for (Vec3<double>* of : {&triad.asymmetry, &triad.quadratic, &triad.cubic}) *of = draw.vector(0.02);
+    const Vec3<double> u = draw.vector(10.0);
+    if (!triad.converges_at(u)) continue;
+    Vec3<double> x = triad.distort(u);
+    for (int step = 0; step < 100; ++step) x = triad.distort(u) - triad.nonlinearity(x);
+    EXPECT_LT((x - u).norm(), 1e-12 * (1.0 + u.norm())) << "the fixed point is not the input";
+  }
+  Triad<double> triad;
+  EXPECT_TRUE(triad.converges_at({1e300, -1e300, 0.0}));
+  EXPECT_FALSE(triad.converges_at({0.0, kNone, 0.0}));
+  EXPECT_FALSE(triad.converges_at({0.0, 0.0, -kInfinite}));
+  triad.cubic.x() = 0.01;
+  EXPECT_TRUE(triad.converges_at({4.0, 100.0, 100.0}));
+  EXPECT_FALSE(triad.converges_at({-4.1, 0.0, 0.0}));
+}
+
 TEST(Triad, GeometryMultipliesBackToTheMatrix) {
   Draw draw(3);
   for (int i = 0; i < 1000; ++i) {

@@ -38,6 +38,9 @@ class WholeFile {
   int descriptor_ = -1;
 };
 
+/// Where WholeFile(@p path) writes: what a link points to, and the link stays.
+std::string written_path(const std::string& path);
+
 /// Removes what was written and not committed: for a handler of signals, of a program that ends.
 void remove_unfinished() noexcept;
 
