@@ -405,7 +405,8 @@ ExitCode report_of(const Options& o) {
 
 void add_report(CLI::App& app, ExitCode& exit_code) {
   CLI::App* command = app.add_subcommand(
-      "report", "One page for people: verdict, sigmas, residuals, correlations, prediction, provenance");
+      "report",
+      "One page for people, of a table run: verdict, sigmas, residuals, correlations, prediction, provenance");
   auto o = std::make_shared<Options>();
   command->add_option("run", o->run, "Run file of the calibration; it is solved anew")->required();
   command->add_option("-o,--output", o->output, "File to write: .html, .md, .json; without one, standard output");

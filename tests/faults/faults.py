@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """faults.py <folder of the commands> <shim> <kills> [live]: every write, sync, rename and read of solve, apply, convert and export
 fails once, sixty of a kind where there are more; everything dribbles; and the commands are killed at random moments. An output is there whole, as without the
-fault, or it is not there. With live (in a network of its own, see tests/apps/isolated): imu_live finds the disk
+fault, or it is not there; of a pair of tables there are never halves of two recordings. With live (in a network of its own, see tests/apps/isolated): imu_live finds the disk
 full, and is killed while it records, and what was in its journal once is in its recording in the end."""
 
 import os
@@ -97,6 +97,45 @@ def killed(name, arguments, output, reference, times):
         for path in left_over("."):
             os.remove(path)
     print(f"[ FIGURE   ] {name}: killed {times} times at random moments of {duration:.2f} s, {whole} times too late; no output half-written")
+
+
+def pairs(arguments, outputs, times):
+    """Of two files that belong together there are never halves of two recordings."""
+    begin = time.perf_counter()
+    subprocess.run(arguments, capture_output=True, check=True)
+    duration = time.perf_counter() - begin
+    reference = {path: content(path) for path in outputs}
+
+    def hold_pair(at):
+        there = {path: content(path) for path in outputs if os.path.exists(path)}
+        of_before = [path for path in there if there[path] == b"of before"]
+        hold(all(path in of_before or there[path] == reference[path] for path in there), f"{at}: a table is not whole")
+        hold(len(of_before) in (0, len(there)), f"{at}: tables of two recordings")
+        for path in left_over("."):
+            os.remove(path)
+
+    def put_before():
+        for path in outputs:
+            with open(path, "wb") as file:
+                file.write(b"of before")
+
+    for kind in ("open", "write", "fsync", "rename"):
+        put_before()
+        run(arguments, f"{kind} 0", TRUNNION_CALLS="calls")
+        for number in range(1, min(60, int(content("calls"))) + 1):
+            put_before()
+            done = run(arguments, f"{kind} {number}")
+            at = f"pair, {kind} {number}"
+            hold(done.returncode in (0, 3) and not left_over("."), f"{at}: exit {done.returncode}, {left_over('.')} is left")
+            hold_pair(at)
+    for turn in range(times):
+        put_before()
+        process = subprocess.Popen(arguments, **QUIET)
+        time.sleep(random.uniform(0.7 if turn % 2 else 0.0, 1.1) * duration)  # the renames are at its end
+        process.kill()
+        process.wait()
+        hold_pair("pair, killed")
+    print(f"[ FIGURE   ] pair of tables: killed {times} times, every call failed once; never of two recordings")
 
 
 def records(data):
@@ -204,5 +243,7 @@ with tempfile.TemporaryDirectory() as folder:
             every_call_fails(name, arguments, output, reference)
             if kills > 0:
                 killed(name, arguments, output, reference, round(kills * share))
+        tables = command("imu_calibrate", "convert", "table/position_1.lcm", "-o", "pair.csv")
+        pairs(tables, ["pair.csv", "pair_encoder.csv"], round(kills * 0.1))
 print(f"{len(failures)} failures")
 sys.exit(bool(failures))
