@@ -25,9 +25,10 @@ ChannelClock::Verdict judge_and_count(ChannelClock& clock, std::int64_t utime, c
   // of two stamps that do not follow each other, the second was counted before the first proved to be the stray
   if (verdict == ChannelClock::Verdict::kStray) ++figures.stray;
   if (verdict != ChannelClock::Verdict::kReset) return verdict;
-  throw Error(ExitCode::kInput, recording + ": the clock of the " + channel +
-                                    " channel was reset: its stamps went to utime " + std::to_string(utime) +
-                                    " and stayed there; split the recording at that point, or see what unit its time is in");
+  throw Error(ExitCode::kInput,
+              recording + ": the clock of the " + channel + " channel was reset: its stamps went to utime " +
+                  std::to_string(utime) +
+                  " and stayed there; split the recording at that point, or see what unit its time is in");
 }
 
 double sample_period(std::vector<double>& steps, const std::string& recording) {
