@@ -68,7 +68,9 @@ void end_on_signals() {
 }
 
 void catch_interrupts() {
-  for (const int signal : {SIGINT, SIGTERM}) handle(signal, on_signal);
+  // SIGINT also where a script's shell has it ignored, as it does for all it starts in the background: it is how they
+  // end
+  for (const int signal : {SIGINT, SIGTERM}) static_cast<void>(std::signal(signal, on_signal));
 }
 
 bool interrupted() { return signalled != 0; }
