@@ -57,6 +57,30 @@ bool too_deep(const std::string& text) {
   return false;
 }
 
+/// The line of what follows a first document; 0: nothing. By the marks at the beginning of lines: yaml-cpp loads the
+/// first alone, and does not end on all texts when it is to load all.
+long long second_document(std::string_view text) {
+  const auto is_mark = [](std::string_view line, std::string_view mark) {
+    return line.substr(0, 3) == mark && (line.size() == 3 || line.find_first_of(" \t\r") == 3);
+  };
+  long long number = 0;
+  bool content = false;
+  bool ended = false;
+  while (!text.empty()) {
+    const std::string_view line = text.substr(0, text.find('\n'));
+    text.remove_prefix(std::min(line.size() + 1, text.size()));
+    ++number;
+    const bool begins = is_mark(line, "---");
+    const bool ends = is_mark(line, "...");
+    const std::size_t first = line.find_first_not_of(" \t\r", begins || ends ? 3 : 0);
+    const bool says = first != std::string_view::npos && line[first] != '#' && line[0] != '%';
+    if (content && (begins || (ended && says))) return number;
+    ended = ended || (ends && content);
+    content = content || says;
+  }
+  return 0;
+}
+
 }  // namespace
 
 std::string nearest(const std::string& word, const std::vector<std::string>& known) {
@@ -78,12 +102,10 @@ StrictYaml StrictYaml::load(const std::string& file, const std::string& format) 
     throw input_error(file, 0, "", "is larger than any " + format + ": a recording is named in a run file");
   const std::string text = read_whole(file, kLargestYaml);
   if (too_deep(text)) throw input_error(file, 0, "", "is nested too deep");
+  if (const long long line = second_document(text))
+    throw input_error(file, line, "", "begins another document: " + format + " is a file of its own");
   try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
-    if (documents.size() > 1)
-      throw input_error(file, documents[1].Mark().line + 1, "",
-                        "holds more than one document: each is a file of its own");
-    const YAML::Node node = documents.empty() ? YAML::Node() : documents.front();
+    const YAML::Node node = YAML::Load(text);
     if (!node.IsMap()) throw input_error(file, 1, "", "is not a YAML map of keys, as " + format + " is");
     StrictYaml root(file, "", node);
     const std::string found = root.at("format").text();

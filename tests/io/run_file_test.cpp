@@ -85,6 +85,12 @@ TEST_F(RunFileTest, NamesAWrongTypeRangeOrUnit) {
   EXPECT_REFUSES(ExitCode::kInput, "not YAML, as trunnion-run/1 is", read("format: [\n"));
   EXPECT_REFUSES(ExitCode::kInput, "a recording is named in a run file", read(std::string(5 << 20, '\xed')));
   EXPECT_REFUSES(ExitCode::kInput, "nested too deep", read("format: " + std::string(5000, '[') + "\n"));
+  const std::string run = "format: trunnion-run/1\nsite: {latitude_deg: 1}\nrecordings: [{log: a.lcm}]\n";
+  EXPECT_NO_THROW(read("%YAML 1.2\n# one\n---\n" + run + "...\n# end\n"));
+  EXPECT_NO_THROW(read("--- # one\n" + run + "serial: ---x\n"));
+  EXPECT_REFUSES(ExitCode::kInput, "run.yaml:4: begins another document", read(run + "---\n" + run));
+  EXPECT_REFUSES(ExitCode::kInput, "run.yaml:4: begins another document", read(run + "--- \r\n"));
+  EXPECT_REFUSES(ExitCode::kInput, "run.yaml:6: begins another document", read(run + "...\n\nserial: 7\n"));
 }
 
 TEST_F(RunFileTest, ReadsTheSheetBesideIt) {
