@@ -30,7 +30,7 @@ Vec3<double> single(const Vec3<double>& v) { return v.unaryExpr(&to_single); }
 Parameters parameters_of(const InertialUnit<double>& unit) {
   constexpr double kLeast = 0.5;  // of a scale that corrects
   constexpr double kMost = 2.0;
-  const Parameters p{single(unit.accel.bias), single(unit.accel.matrix().inverse().diagonal()), single(unit.gyro.bias)};
+  Parameters p{single(unit.accel.bias), single(unit.accel.matrix().inverse().diagonal()), single(unit.gyro.bias)};
   if (!(p.accel_scale.array() > kLeast && p.accel_scale.array() < kMost).all())
     throw Error(ExitCode::kInput,
                 "a vehicle corrects each axis for itself, and the scales would be " + listed(p.accel_scale, ", ") +
