@@ -95,7 +95,7 @@ const io::LogFormat& format_to_write(const std::string& output, const std::strin
 
 void say_losses(const io::LogLosses& losses) {
   if (losses.samples > 0)
-    std::fprintf(stderr, "%lld samples were lost before they were recorded, as their sequence numbers say\n",
+    std::fprintf(stderr, "%lld samples are missing, as sequence numbers or the recorder's own count say\n",
                  losses.samples);
   if (losses.records > 0)
     std::fprintf(stderr, "%lld damaged records, %lld bytes passed over\n", losses.records, losses.bytes);

@@ -164,7 +164,7 @@ class McapReader {
           " (axes: of a run file names them)");
     const long long readings = missing(Role::kEncoder);
     if (readings > 0)
-      add(std::to_string(readings) + " readings of the encoders, of those that it counts, are not there");
+      add(std::to_string(readings) + " readings of the encoders are missing, as the recorder's own count says");
     if (cut > 0) add("the recording was not ended");
     LogLosses losses = losses_of(intake_, cut, note);
     losses.samples = missing(Role::kImu);
@@ -184,6 +184,7 @@ class McapReader {
     std::uint64_t last = 0;
     std::uint64_t messages = 0;  // seen
     std::uint64_t counted = 0;   // by the recorder
+    [[nodiscard]] std::uint64_t missing() const { return counted > messages ? counted - messages : 0; }
   };
 
   [[nodiscard]] std::uint64_t left() const { return static_cast<std::uint64_t>(stream_.size() - stream_.offset()); }
@@ -334,7 +335,7 @@ class McapReader {
   [[nodiscard]] long long missing(Role role) const {
     std::uint64_t sum = 0;
     for (const auto& [id, channel] : channels_) {
-      if (channel.role == role && channel.counted > channel.messages) sum += channel.counted - channel.messages;
+      if (channel.role == role) sum += channel.missing();
     }
     return static_cast<long long>(sum);
   }
@@ -361,9 +362,7 @@ class McapReader {
     require(request_, intake_, stream_.size(), holds);
     for (const auto& [id, channel] : channels_) {
       const bool read = channel.role == Role::kImu || (channel.role == Role::kEncoder && request_.need_encoder);
-      if (read && channel.counted > channel.messages &&
-          static_cast<double>(channel.counted - channel.messages) >
-              kTolerableLoss * static_cast<double>(channel.counted))
+      if (read && static_cast<double>(channel.missing()) > kTolerableLoss * static_cast<double>(channel.counted))
         throw input_error(request_.path, 0, printable(channel.topic),
                           "has " + std::to_string(channel.messages) + " messages, of " +
                               std::to_string(channel.counted) + " that the recorder counted: the file is damaged");

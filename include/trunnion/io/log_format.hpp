@@ -34,7 +34,7 @@ struct LogChannels {
 struct LogLosses {
   long long records = 0;  ///< damaged in the file
   long long bytes = 0;
-  long long samples = 0;  ///< of the unit, that its sequence numbers miss
+  long long samples = 0;  ///< of the unit, that its sequence numbers or its recorder's count miss
   std::string note;       ///< in words, what else there is to know: of what was not read, of what is in the readings
 };
 
